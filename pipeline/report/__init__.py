@@ -1,0 +1,1 @@
+"""What a finished job says of itself: JSON and pictures."""

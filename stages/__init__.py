@@ -1,0 +1,1 @@
+"""The geometry work: construct, verify, unroll, nest, write.  No files, no clocks, no environment."""

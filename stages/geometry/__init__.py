@@ -1,0 +1,1 @@
+"""Mathematics on plain arrays.  Knows no part, no job and no stage."""

@@ -1,0 +1,89 @@
+"""Array types with their shapes, and the base of all values that own arrays.
+
+The shape annotations are those of jaxtyping.  They are checked while tests run; a normal run does not load jaxtyping
+at all (it would double the time to start), and there the names stand for plain `numpy.ndarray`.
+"""
+
+import dataclasses
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING or "jaxtyping" in sys.modules:
+    from jaxtyping import Bool, Float64, Int64
+
+    Values = Float64[np.ndarray, " n"]
+    Points2 = Float64[np.ndarray, "n 2"]
+    Points3 = Float64[np.ndarray, "n 3"]
+    Vector2 = Float64[np.ndarray, "2"]
+    Vector3 = Float64[np.ndarray, "3"]
+    Matrix = Float64[np.ndarray, "n m"]
+    Mask = Bool[np.ndarray, " n"]
+    Indices = Int64[np.ndarray, " n"]
+else:
+    Values = Points2 = Points3 = Vector2 = Vector3 = Matrix = Mask = Indices = np.ndarray
+
+Array = NDArray[np.float64]
+"""An array of float64 whose shape the docstring gives."""
+
+EPS = float(np.finfo(np.float64).eps)
+"""Spacing of the doubles at 1: 2.2e-16."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArrayValue:
+    """A read-only value: its arrays are copied, made float64 and locked, then `check` is called.
+
+    A pickle would drop numpy's read-only flag and skip the check, so `__reduce__` constructs the value again.
+    """
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                object.__setattr__(self, field.name, locked(value))
+        self.check()
+
+    def check(self) -> None:
+        """Raise ValueError if a rule of this value is broken."""
+
+    def replace(self, **changes: object) -> Self:
+        """Return a copy with some fields changed."""
+        return dataclasses.replace(self, **changes)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), tuple(getattr(self, field.name) for field in dataclasses.fields(self))
+
+
+def locked(values: Array) -> Array:
+    """Return a read-only float64 copy."""
+    copy = np.array(values, dtype=np.float64)
+    copy.setflags(write=False)
+    return copy
+
+
+def cross2(a: Array, b: Array) -> Array:
+    """Return the z component of the cross product of plane vectors, along the last axis."""
+    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
+
+
+def dot(a: Array, b: Array) -> Array:
+    """Return the dot product along the last axis."""
+    product: Array = np.einsum("...i,...i->...", a, b)
+    return product
+
+
+def norm(a: Array) -> Array:
+    """Return the Euclidean length along the last axis."""
+    length: Array = np.sqrt(np.einsum("...i,...i->...", a, a))
+    return length
+
+
+def unit(a: Array) -> Array:
+    """Return the vectors scaled to length 1; zero vectors stay zero."""
+    length = norm(a)[..., None]
+    return np.divide(a, length, out=np.zeros_like(a), where=length > 0)

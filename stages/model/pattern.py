@@ -1,0 +1,54 @@
+"""The flat pattern: exact edges, the lines and arcs that will be cut, and what is drawn on it.
+
+Flat frame, mm: c0(0) at the origin, the first ruling along +x, seen from the side of p x c0'.
+"""
+
+from dataclasses import dataclass
+
+from stages.geometry.arcpath import ArcPath
+from stages.geometry.arrays import ArrayValue, Points2, Vector2
+from stages.geometry.plane import PlaneCurve
+
+
+@dataclass(frozen=True, slots=True)
+class Contour:
+    """A closed contour: outer counter-clockwise, inner clockwise.
+
+    edges: the exact edges in order, each beginning where the one before ends (to rounding).
+    path: closed lines and arcs within `chord_mm` of the edges; what is nested, written and cut.
+    """
+
+    edges: tuple[PlaneCurve, ...]
+    path: ArcPath
+    chord_mm: float
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A line to be etched, not cut."""
+
+    name: str
+    path: ArcPath
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlatPattern(ArrayValue):
+    """One part, flat.
+
+    quantity: copies wanted.
+    rotations: angles in degrees it may be turned by in the nest; None: what the nest allows.
+    label_at: a point inside the part where its name may be written, as far from the contours as can be had.
+    corners: c0(0), c1(0), c1(1), c0(1) in the flat frame, shape (4, 2); those of the bounding box for a plate.
+    """
+
+    part: str
+    quantity: int
+    outer: Contour
+    inner: tuple[Contour, ...]
+    marks: tuple[Mark, ...]
+    label_at: Vector2
+    corners: Points2
+    rotations: tuple[float, ...] | None = None
+    thickness_mm: float | None = None
+    density_kg_m3: float | None = None
