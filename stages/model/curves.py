@@ -1,0 +1,176 @@
+"""Curves as a job file describes them: one key of a table names the sort, its value the data.
+
+Circles and arcs start along the x axis of DXF's arbitrary-axis rule and run counter-clockwise about `normal`; an
+ellipse starts at center + major, towards minor.  Values are exact (see `stages.model.scalars`); what they look like as
+functions is decided in `stages.construct.curves`.
+"""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Annotated, NamedTuple
+
+from msgspec import Meta, Struct, field
+
+from stages.model.scalars import Angle, Direction, Length, Number, is_zero
+
+PlanePoint = Annotated[tuple[Length, ...], Meta(min_length=2, max_length=3)]
+"""Two or three coordinates; two only on flat parts and stock."""
+
+
+class Trouble(NamedTuple):
+    """A rule that the values of a table break: which key, what is wrong, what would be right."""
+
+    key: str
+    message: str
+    hint: str
+
+
+class Table(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A table of the job file."""
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield the rules that the values break, beyond types and ranges of single values."""
+        yield from ()
+
+
+class BSplineSpec(Table, frozen=True, kw_only=True):
+    """A B-spline: knots in full (count = points + degree + 1), weights for a rational one."""
+
+    degree: Annotated[int, Meta(ge=1, le=15)]
+    knots: tuple[Number, ...]
+    points: Annotated[tuple[PlanePoint, ...], Meta(min_length=2)]
+    weights: tuple[Number, ...] | None = None
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield what is wrong with counts, order of knots and weights."""
+        wanted = len(self.points) + self.degree + 1
+        if len(self.points) <= self.degree:
+            yield Trouble("points", f"{len(self.points)} points for degree {self.degree}", "give more than the degree")
+        elif len(self.knots) != wanted:
+            yield Trouble("knots", f"{len(self.knots)} knots", f"points + degree + 1 = {wanted} are needed")
+        elif any(a > b for a, b in zip(self.knots, self.knots[1:], strict=False)):
+            yield Trouble("knots", "knots decrease", "give them in rising order")
+        elif self.knots[self.degree] == self.knots[-self.degree - 1]:
+            yield Trouble("knots", "the knots span no interval", "first and last inner knot must differ")
+        elif any(a == b for a, b in zip(self.knots[1:-1], self.knots[self.degree + 1 : -1], strict=False)):
+            yield Trouble("knots", "an inner knot is repeated more than degree times", "the curve would fall apart")
+        if self.weights is not None and len(self.weights) != len(self.points):
+            yield Trouble("weights", f"{len(self.weights)} weights", f"one per point: {len(self.points)}")
+        if self.weights is not None and any(weight <= 0 for weight in self.weights):
+            yield Trouble("weights", "a weight is not positive", "all weights must be above 0")
+
+
+class CircleSpec(Table, frozen=True, kw_only=True):
+    """A full circle."""
+
+    center: PlanePoint
+    radius: Length
+    normal: Direction = field(default_factory=lambda: (Number(0), Number(0), Number(1)))
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a radius or normal that makes no circle."""
+        if self.radius <= 0:
+            yield Trouble("radius", f"{float(self.radius):g} mm", "a radius must be above 0")
+        if is_zero(self.normal):
+            yield Trouble("normal", "the vector has length 0", "give the direction of the axis")
+
+
+class ArcSpec(CircleSpec, frozen=True, kw_only=True):
+    """A circular arc from `start` to `end`, degrees; `end` below `start` runs clockwise."""
+
+    start: Angle
+    end: Angle
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield what makes no arc."""
+        yield from CircleSpec.troubles(self)
+        if self.start == self.end:
+            yield Trouble("end", "the arc has no sweep", "start and end must differ; a full turn is a circle")
+        if abs(self.end - self.start) > FULL_TURN:
+            yield Trouble("end", f"a sweep of {float(self.end - self.start):g} deg", "at most 360 deg")
+
+
+FULL_TURN = 360
+
+
+class EllipseSpec(Table, frozen=True, kw_only=True):
+    """A full ellipse by its two semi-axes as vectors."""
+
+    center: PlanePoint
+    major: PlanePoint
+    minor: PlanePoint
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield semi-axes of length 0."""
+        for key in ("major", "minor"):
+            if is_zero(getattr(self, key)):
+                yield Trouble(key, "the semi-axis has length 0", "give a vector from the centre")
+
+
+class HelixSpec(Table, frozen=True, kw_only=True):
+    """A helix about z from (radius, 0, 0), rising `pitch` per turn."""
+
+    radius: Length
+    pitch: Length
+    turns: Number
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a radius or a number of turns that makes no helix."""
+        if self.radius <= 0:
+            yield Trouble("radius", f"{float(self.radius):g} mm", "a radius must be above 0")
+        if self.turns <= 0:
+            yield Trouble("turns", f"{float(self.turns):g}", "the number of turns must be above 0")
+
+
+class CurveSpec(Table, frozen=True, kw_only=True, omit_defaults=True):
+    """A curve: exactly one of its keys (`layer` goes with `file`).
+
+    points: interpolated by a cubic spline, chord-length parameter, not-a-knot; last = first: periodic.
+    polyline: straight segments, each an equal share of the parameter.
+    chain: curves that join end to end.
+    """
+
+    bezier: Annotated[tuple[PlanePoint, ...], Meta(min_length=2, max_length=16)] | None = None
+    bspline: BSplineSpec | None = None
+    points: Annotated[tuple[PlanePoint, ...], Meta(min_length=3)] | None = None
+    polyline: Annotated[tuple[PlanePoint, ...], Meta(min_length=2)] | None = None
+    line: tuple[PlanePoint, PlanePoint] | None = None
+    arc: ArcSpec | None = None
+    circle: CircleSpec | None = None
+    ellipse: EllipseSpec | None = None
+    helix: HelixSpec | None = None
+    chain: "Annotated[tuple[CurveSpec, ...], Meta(min_length=1)] | None" = None
+    file: str | None = None
+    layer: str | None = None
+
+    def sorts(self) -> list[str]:
+        """Return the keys that are given, `layer` apart."""
+        return [key for key in CURVE_KEYS if getattr(self, key) is not None]
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a missing or doubled key and points that coincide."""
+        given = self.sorts()
+        if len(given) != 1:
+            found = " and ".join(given) or "none"
+            yield Trouble("", f"a curve has exactly one sort, here {found}", "one of " + ", ".join(CURVE_KEYS))
+        if self.layer is not None and self.file is None:
+            yield Trouble("layer", "a layer without a file", 'give file = "....dxf" too')
+        for key in ("points", "polyline", "line"):
+            points = getattr(self, key) or ()
+            for i, (a, b) in enumerate(pairwise(points)):
+                if a == b:
+                    yield Trouble(f"{key}[{i + 1}]", "the point repeats the one before", "leave one of them out")
+        if self.bezier is not None and len(set(self.bezier)) == 1:
+            yield Trouble("bezier", "all control points coincide", "give at least two different points")
+
+
+CURVE_KEYS = ("bezier", "bspline", "points", "polyline", "line", "arc", "circle", "ellipse", "helix", "chain", "file")
+
+
+def is_flat(curve: CurveSpec) -> bool:
+    """Return whether some point of the curve is given by two coordinates only."""
+    plain = [*(curve.bezier or ()), *(curve.points or ()), *(curve.polyline or ()), *(curve.line or ())]
+    if curve.bspline is not None:
+        plain += curve.bspline.points
+    plain += [spec.center for spec in (curve.arc, curve.circle, curve.ellipse) if spec is not None]
+    return any(len(point) == len("xy") for point in plain) or any(is_flat(part) for part in curve.chain or ())
