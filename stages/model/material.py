@@ -1,0 +1,33 @@
+"""The sheet that parts are made of, and a part together with it."""
+
+from dataclasses import dataclass
+
+from stages.model.part import PartSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """What is known of the sheet; None: not known, and what depends on it is not computed or checked.
+
+    bend_radius_min_mm: smallest inside radius it can be bent to.
+    max_strain: largest strain of the outer fibre, as a fraction.
+    """
+
+    name: str = ""
+    thickness_mm: float | None = None
+    density_kg_m3: float | None = None
+    bend_radius_min_mm: float | None = None
+    max_strain: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part as asked for, and its material: what the stages start from."""
+
+    spec: PartSpec
+    material: Material = Material()
+
+    @property
+    def name(self) -> str:
+        """Return the name of the part."""
+        return self.spec.name
