@@ -1,0 +1,84 @@
+"""Construct: from the description of a part to its surface, with every condition measured.
+
+    construct(part, tol) -> Outcome[Surface | None]
+
+A surface that cannot be made (an apex on its directrix, an outline that does not close) is refused with a finding.
+What a theorem of the paper assumes is computed as a metric, never taken for granted.  Whether the surface is
+developable is not decided here: `verify` does that for every kind alike.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+
+from stages.construct.assemble import patches_of
+from stages.construct.plates import plate
+from stages.construct.theorems import is_planar
+from stages.geometry.arrays import norm
+from stages.geometry.joins import join
+from stages.geometry.ruled import RuledPatch, at
+from stages.model.material import Part
+from stages.model.part import Flat
+from stages.model.report import Finding, Metric, Outcome, StageReport
+from stages.model.surface import RuledSurface, Surface
+from stages.model.tolerances import Tolerances
+
+__all__ = ["construct"]
+
+
+def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
+    """Return the surface of a part in mm, or None with the reason; lengths are exact to rounding."""
+    if isinstance(part.spec.surface, Flat):
+        return plate(part, part.spec.surface, tol)
+    built = patches_of(part.spec.surface, tol)
+    size = size_of(built.patches) if built.patches else 0.0
+    findings = [*built.findings, *_too_small(built.patches, size)]
+    metrics = [*built.metrics(size)]
+    if built.patches and size > 0.0:
+        metrics += [*_planar(built.patches), *_joins(built.patches, size, tol)]
+    report = StageReport("construct", part.name, tuple(metrics), tuple(findings), built.detail)
+    surface = RuledSurface(part, built.patches, size) if report.passed else None
+    return Outcome(surface, report)
+
+
+def size_of(patches: tuple[RuledPatch, ...]) -> float:
+    """Return the diagonal of the bounding box of the directrices, mm (sampled at 65 points of each)."""
+    v = np.linspace(0.0, 1.0, 65)
+    points = np.concatenate([at(patch, np.full_like(v, u), v) for patch in patches for u in (0.0, 1.0)])
+    return float(norm(points.max(axis=0) - points.min(axis=0)))
+
+
+def _too_small(patches: tuple[RuledPatch, ...], size: float) -> list[Finding]:
+    if patches and not np.isfinite(size):
+        return [Finding("not-finite", "the surface is not finite", fatal=True)]
+    if patches and size == 0.0:
+        return [Finding("no-extent", "all points of the surface coincide", fatal=True)]
+    return []
+
+
+def _planar(patches: tuple[RuledPatch, ...]) -> list[Metric]:
+    planar, proved = is_planar(patches)
+    return [Metric("planar", planar, "", "proved" if proved else "sampled")]
+
+
+def _joins(patches: tuple[RuledPatch, ...], size: float, tol: Tolerances) -> list[Metric]:
+    """Return gap, angle of normals and jump of curvature (times D), the worst of all joins."""
+    joins = [(i, join(a, b)) for i, (a, b) in enumerate(pairwise(patches), start=1)]
+    if not joins:
+        return []
+    gap = max(joins, key=lambda item: item[1].gap_mm)
+    turn = max(joins, key=lambda item: item[1].normal_rad)
+    jumps = [(i, found.jump) for i, found in joins if found.jump is not None]
+    jump = max(jumps, key=lambda item: item[1], default=None)
+    return [
+        Metric("join_gap_mm", gap[1].gap_mm, "mm", "sampled", tol.join_mm, {"v": gap[0]}),
+        Metric("join_normal_deg", float(np.degrees(turn[1].normal_rad)), "deg", "sampled", None, {"v": turn[0]}),
+        Metric(
+            "join_curvature_jump",
+            None if jump is None else jump[1] * size,
+            "1/D",
+            "sampled",
+            None,
+            None if jump is None else {"v": jump[0]},
+        ),
+    ]

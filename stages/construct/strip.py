@@ -1,0 +1,101 @@
+"""Theorem 3.1: composite surfaces of the paper's patches.
+
+Conditions (A) to (F) say that both directrices of the next patch start with the first and second derivatives that the
+ones before end with (and at the same points).  That makes the join C2 in the fixed parametrisation: sufficient for G2,
+not necessary.  The next patch must be developable by itself, so it is built by the theorem of the first one.
+"""
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+
+from stages.construct.quintic import (
+    End,
+    combine,
+    cone_ends,
+    cylinder_ends,
+    first_derivative,
+    moved,
+    next_end,
+    planar_ends,
+    ruled_ends,
+    second_derivative,
+    vector,
+)
+from stages.model.part import (
+    SHAPE_KEYS,
+    NextPatch,
+    QuinticCone,
+    QuinticCylinder,
+    QuinticPlanar,
+    QuinticRuled,
+    QuinticStrip,
+)
+
+EndPair = tuple[End, End]
+Pair = tuple[EndPair, EndPair | None]
+"""Ends of c0 and of c1; None where c1 follows from an apex."""
+
+
+def strip_ends(spec: QuinticStrip, first_detail: dict[str, object], *, normalise: bool) -> list[Pair]:
+    """Return the ends of both directrices of every patch of a strip."""
+    pairs = [_first(spec, first_detail, normalise=normalise)]
+    for patch in spec.next:
+        pairs.append(_following(spec, pairs[-1], patch, normalise=normalise))
+    return pairs
+
+
+def _first(spec: QuinticStrip, first_detail: dict[str, object], *, normalise: bool) -> Pair:
+    match spec.first:
+        case QuinticRuled():
+            return ruled_ends(spec.first, normalise=normalise)
+        case QuinticPlanar():
+            return planar_ends(spec.first)
+        case QuinticCylinder():
+            return cylinder_ends(spec.first, normalise=normalise)
+        case QuinticCone():
+            shape = first_detail["shape"]
+            if not isinstance(shape, dict):
+                raise TypeError("a cone's detail holds its shape parameters by name")
+            return cone_ends(spec.first, [Fraction(shape[key]) for key in SHAPE_KEYS], normalise=normalise), None
+
+
+def _following(spec: QuinticStrip, before: Pair, patch: NextPatch, *, normalise: bool) -> Pair:
+    """Return the ends of the patch after `before`."""
+    c0_start, point = before[0][1], vector(patch.p1)
+    if isinstance(spec.first, QuinticCylinder):
+        alpha = Fraction(patch.alpha1)
+        end = next_end(patch, "", Fraction(patch.s1 or 0) * alpha, point, normalise=normalise)
+        c1_before = before[1]
+        if c1_before is None:
+            raise ValueError("a cylinder has two directrices")
+        ruling = combine((1, c1_before[1].P), (-1, c0_start.P))
+        return (c0_start, end), (moved(c0_start, ruling), moved(end, combine((Fraction(patch.g or 0), ruling))))
+    end = next_end(patch, "", Fraction(patch.beta1 or 0), point, normalise=normalise)
+    if before[1] is None:
+        return (c0_start, end), None
+    hat = next_end(patch, "_hat", Fraction(patch.beta1_hat or 0), vector(patch.q1 or ()), normalise=normalise)
+    return (c0_start, end), (before[1][1], hat)
+
+
+def joins_detail(pairs: Sequence[Pair]) -> dict[str, object]:
+    """Return, per join, the new patch's start data in the paper's letters and the residuals of (3.9)."""
+    return {"joins": [_join(a, b) for a, b in pairwise(pairs)]}
+
+
+def _join(before: Pair, after: Pair) -> dict[str, object]:
+    end, start = before[0][1], after[0][0]
+    return {
+        "gamma0": float(start.alpha),
+        "mu0": float(start.beta),
+        "t0": [float(x) for x in start.T],
+        "n0": [float(x) for x in start.N],
+        "k2": float(start.k),
+        "first_derivative_residual": _distance(first_derivative(end), first_derivative(start)),
+        "second_derivative_residual": _distance(second_derivative(end), second_derivative(start)),
+    }
+
+
+def _distance(a: Sequence[Fraction], b: Sequence[Fraction]) -> float:
+    return math.sqrt(sum(((x - y) ** 2 for x, y in zip(a, b, strict=True)), Fraction(0)))

@@ -1,0 +1,149 @@
+"""What the paper's theorems claim, computed for the patch at hand: coefficients, conditions, end data.
+
+    det(r', p, r1') = sum_i (1 - v)^(13 - i) v^i A_i,      p' x p = -5 sum_i (1 - v)^(9 - i) v^i C~_i.
+
+The A_i are the paper's explicit ones (its B.Z sums are smaller by 25); the C~_i are its sums with 5 (Y0 x X1) in C~_1,
+where 4 is printed.  All in exact arithmetic, rounded once at the end.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from stages.construct.quintic import End
+from stages.geometry import bernstein
+from stages.geometry.arrays import Array, dot, norm
+from stages.geometry.bernstein import Polynomial, cross, derivative, inner, subtract, vector_from_points
+from stages.geometry.curves import Bezier
+from stages.geometry.ruled import RuledPatch
+from stages.model.report import Finding, Metric
+from stages.model.scalars import floats
+from stages.model.tolerances import Tolerances
+
+DEGREE_A, DEGREE_C = 13, 9
+
+
+def exact_curves(patch: RuledPatch) -> tuple[bernstein.Vector, bernstein.Vector]:
+    """Return both directrices of a polynomial patch as exact polynomials."""
+    if not (isinstance(patch.c0, Bezier) and isinstance(patch.c1, Bezier)):
+        raise TypeError("only polynomial directrices are exact")
+    return vector_from_points(patch.c0.exact), vector_from_points(patch.c1.exact)
+
+
+def coefficients_a(patch: RuledPatch) -> tuple[Fraction, ...]:
+    """Return A_0 to A_13, mm3."""
+    r, r1 = exact_curves(patch)
+    p = subtract(r1, r)
+    triple = inner(tuple(derivative(f) for f in r), cross(p, tuple(derivative(f) for f in r1)))
+    return _scaled(triple, DEGREE_A)
+
+
+def coefficients_c(patch: RuledPatch) -> tuple[tuple[Fraction, ...], ...]:
+    """Return C~_0 to C~_9, vectors in mm2, with the paper's factor."""
+    r, r1 = exact_curves(patch)
+    p = subtract(r1, r)
+    components = [_scaled(f, DEGREE_C) for f in cross(tuple(derivative(f) for f in p), p)]
+    return tuple(tuple(-c / 5 for c in row) for row in zip(*components, strict=True))
+
+
+def _scaled(f: Polynomial, degree: int) -> tuple[Fraction, ...]:
+    f = bernstein.elevate(f, degree)
+    return tuple(Fraction(c, f.denominator) for c in f.scaled)
+
+
+def relative_a(patch: RuledPatch, size_mm: float) -> float:
+    """Return the largest |A_i| over the cube of the size: 0 exactly where the patch is developable."""
+    return float(max(abs(a) for a in coefficients_a(patch))) / size_mm**3
+
+
+def relative_c(patch: RuledPatch, size_mm: float) -> float:
+    """Return the largest |C~_i| over the square of the size: 0 exactly where the patch is a cylinder."""
+    return float(max(abs(c) for row in coefficients_c(patch) for c in row)) / size_mm**2
+
+
+def parallel_residual(vectors: Sequence[Array]) -> float:
+    """Return the largest sine between the first vector and the others."""
+    first = vectors[0]
+    sines = [norm(np.cross(first, v)) / (norm(first) * norm(v)) for v in vectors[1:] if norm(v) > 0]
+    return float(max(sines, default=0.0))
+
+
+def end_metrics(ends: Sequence[tuple[str, End]], tol: Tolerances) -> tuple[list[Metric], list[Finding]]:
+    """Return how the end data depart from what (2.2) assumes: |T| = |N| = 1, T.N = 0, and so curvature k.
+
+    The curvature reached is k |T x N| / |T|^3; the departure is compared with |k|.
+    """
+    norms = [(abs(float(norm(floats(v))) - 1.0), where) for where, e in ends for v in (e.T, e.N) if any(v)]
+    dots = [(abs(float(dot(floats(e.T), floats(e.N)))), where) for where, e in ends]
+    curvatures = [(_curvature_error(e), where) for where, e in ends]
+    rows = (
+        ("tangent_norm_error", norms, tol.tangent_norm),
+        ("normal_tangent_dot", dots, None),
+        ("end_curvature_error", curvatures, None),
+    )
+    metrics = []
+    for name, values, limit in rows:
+        value, where = max(values, default=(0.0, ""))
+        metrics.append(Metric(name, value, "", "proved", limit, {"end": where}))
+    return metrics, _curvature_findings(ends)
+
+
+def _curvature_error(end: End) -> float:
+    """Return |curvature reached - k| / |k|, 0 where k is 0."""
+    return abs(_reached(end) / float(end.k) - 1.0) if end.k else 0.0
+
+
+def _reached(end: End) -> float:
+    t, n = floats(end.T), floats(end.N)
+    return float(end.k) * float(norm(np.cross(t, n)) / norm(t) ** 3)
+
+
+def _curvature_findings(ends: Sequence[tuple[str, End]]) -> list[Finding]:
+    return [
+        Finding(
+            "end-curvature",
+            f"at end {where} the curvature is {_reached(end):.5g} per mm, asked {float(end.k):.5g}: "
+            f"T.N = {float(dot(floats(end.T), floats(end.N))):.4g}, and only a normal across the tangent reaches k",
+            where={"end": where},
+        )
+        for where, end in ends
+        if _curvature_error(end) > CURVATURE_WORTH_SAYING
+    ]
+
+
+CURVATURE_WORTH_SAYING = 1e-3
+"""A departure of the end curvature below 0.1 % is the rounding of four printed digits."""
+
+
+def is_planar(patches: Sequence[RuledPatch]) -> tuple[bool, bool]:
+    """Return whether all patches lie in one plane, and whether that is proved (exact control points)."""
+    if all(patch.polynomial for patch in patches):
+        return _exactly_planar([point for patch in patches for point in _control_points(patch)]), True
+    v = np.linspace(0.0, 1.0, 65)
+    points = np.concatenate([c.jet(v, 0)[0] for patch in patches for c in (patch.c0, patch.c1)])
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return bool(spread[2] <= PLANAR * spread[0]), False
+
+
+PLANAR = 1e-12
+"""Sampled points whose third principal extent is below this share of the first lie in a plane up to rounding."""
+
+
+def _control_points(patch: RuledPatch) -> list[tuple[Fraction, ...]]:
+    return [point for c in (patch.c0, patch.c1) if isinstance(c, Bezier) for point in c.exact]
+
+
+def _exactly_planar(points: Sequence[Sequence[Fraction]]) -> bool:
+    """Return whether the points lie in one plane: every triple product with two spanning differences vanishes."""
+    rows = [[x - o for x, o in zip(point, points[0], strict=True)] for point in points[1:]]
+    a = next((row for row in rows if any(row)), None)
+    if a is None:
+        return True
+    normals = (_cross(a, row) for row in rows)
+    normal = next((n for n in normals if any(n)), None)
+    return normal is None or all(sum(x * y for x, y in zip(normal, row, strict=True)) == 0 for row in rows)
+
+
+def _cross(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

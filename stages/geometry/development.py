@@ -1,0 +1,160 @@
+"""The isometric map of a developable ruled surface onto the plane, by two quadratures.
+
+With e = p / |p| and w the unit vector across the ruling at its middle,  phi' = e'.w  turns the ruling in the plane and
+q' = (c0'.e) E + (c0'.w) E_perp  carries the directrix, E = (cos phi, sin phi):  flat(u, v) = q(v) + u |p(v)| E(v).
+Neither a normal nor the curvature of the directrix occurs, so apexes, straight directrices, inflections and cylinders
+are no special cases [1]_.
+
+Both quadratures run on panels of 16 Gauss nodes (`quadrature`), pieces one after the other: a ruling shared by two
+pieces keeps its direction.  Positions are good to some 1e-14 of the size.  Not for surfaces whose edge of regression
+lies inside (verify refuses them); of a surface with warp the map is the one that keeps each ruling and its angle to c0.
+
+.. [1] M. P. do Carmo, "Differential Geometry of Curves and Surfaces", 1976, sections 3-5 and 4-2: developable surfaces
+   and the intrinsic equations of their rulings.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from stages.geometry import quadrature
+from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, dot, norm, unit
+from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER
+from stages.geometry.ruled import RuledPatch, across, frames
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlatPiece(ArrayValue):
+    """One piece, flat: Legendre series of phi and q on each panel, offsets included.
+
+    breaks: panel ends in v, shape (m + 1,).
+    phi: coefficients, rad, shape (m, 17).  q: coefficients, mm, shape (m, 17, 2).
+    """
+
+    patch: RuledPatch
+    breaks: Values
+    phi: Array
+    q: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Development:
+    """The pieces of a strip, flat, in one frame: c0(0) at the origin and the first ruling along +x."""
+
+    pieces: tuple[FlatPiece, ...]
+
+
+def develop(patches: tuple[RuledPatch, ...]) -> Development:
+    """Return the flat map of the pieces.  Raises NoSolutionError where the quadrature does not resolve."""
+    pieces: list[FlatPiece] = []
+    phi, q = 0.0, np.zeros(2)
+    for number, patch in enumerate(patches):
+        piece = _flat_piece(patch, phi, q, f"unrolling piece {number}")
+        pieces.append(piece)
+        phi, q = float(piece.phi[-1].sum()), piece.q[-1].sum(axis=0)
+    return Development(tuple(pieces))
+
+
+def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> FlatPiece:
+    """Return one piece that starts with the angle phi0 at q0."""
+    breaks, rates = quadrature.panels(lambda v: _rates(patch, v), subject)
+    half = np.diff(breaks)[:, None] / 2.0
+    # the turning is scaled to a length (see _rates): back to rad here
+    turn = half * quadrature.coefficients(rates[..., 0] / _scale(patch)) @ ANTIDERIVATIVE.T
+    phi = _chained(turn[..., None], np.array([phi0]))[..., 0]
+    e, e_perp = _axes(phi @ AT_NODES.T)
+    velocity = rates[..., 1:2] * e + rates[..., 2:3] * e_perp
+    steps = half[..., None] * np.einsum("lk,pkc->plc", ANTIDERIVATIVE, quadrature.coefficients(velocity))
+    return FlatPiece(patch, breaks, phi, _chained(steps, q0))
+
+
+def _chained(local: Array, start: Array) -> Array:
+    """Return the series of all panels, each begun where the one before ends; (m, 17, c) and (c,)."""
+    ends = local.sum(axis=1)
+    offsets = np.concatenate([np.zeros((1, ends.shape[1])), np.cumsum(ends, axis=0)[:-1]]) + start
+    chained = local.copy()
+    chained[:, 0] += offsets
+    return chained
+
+
+def _axes(phi: Array) -> tuple[Array, Array]:
+    """Return E and E_perp at angles phi, shape (..., 2)."""
+    c, s = np.cos(phi), np.sin(phi)
+    return np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)
+
+
+def _rates(patch: RuledPatch, v: Values) -> Array:
+    """Return phi' times the patch's length scale, c0'.e, c0'.w and |p|, shape (n, 4), all mm.
+
+    |p| is here only to be resolved: positions depend on it as well.
+    """
+    f = frames(patch, v)
+    length = norm(f.p)
+    e = unit(f.p)
+    w = unit(across(f, 0.5)[1])
+    turn = np.divide(dot(f.p_d1, w), length, out=np.zeros_like(length), where=length > 0)
+    return np.stack([turn * _scale(patch), dot(f.c0_d1, e), dot(f.c0_d1, w), length], axis=1)
+
+
+def _scale(patch: RuledPatch) -> float:
+    """Return a length of the patch's size, mm: what an angle is multiplied by to be compared with lengths."""
+    ends = np.array([0.0, 0.5, 1.0])
+    f = frames(patch, ends)
+    return float(max(norm(f.p).max(), norm(f.c0[1:] - f.c0[:-1]).max()))
+
+
+def angle(piece: FlatPiece, v: Values) -> Values:
+    """Return the direction of the flat rulings at v, rad."""
+    index, x = _locate(piece, v)
+    return _series(piece.phi[index][..., None], x)[:, 0]
+
+
+def positions(piece: FlatPiece, u: Values, v: Values) -> Points2:
+    """Return the flat positions of S(u, v), mm: what every later stage sees of the surface."""
+    index, x = _locate(piece, v)
+    e, _ = _axes(_series(piece.phi[index][..., None], x)[:, 0])
+    rulings = norm(piece.patch.p.jet(v, 0)[0])
+    return _series(piece.q[index], x) + (u * rulings)[:, None] * e
+
+
+def velocities(piece: FlatPiece, u: Values, v: Values) -> Points2:
+    """Return d/dv of the flat positions, mm, from the rates: for directions, never for measuring distortion."""
+    e, e_perp = _axes(angle(piece, v))
+    f = frames(piece.patch, v)
+    w = unit(across(f, 0.5)[1])
+    s_v = f.c0_d1 + u[:, None] * f.p_d1
+    return dot(s_v, unit(f.p))[:, None] * e + dot(s_v, w)[:, None] * e_perp
+
+
+def _locate(piece: FlatPiece, v: Values) -> tuple[Indices, Values]:
+    """Return the panel of each v and the place in it, -1 to 1."""
+    index = np.clip(np.searchsorted(piece.breaks, v, side="right") - 1, 0, piece.breaks.size - 2)
+    low, high = piece.breaks[index], piece.breaks[index + 1]
+    return index, (2.0 * v - low - high) / (high - low)
+
+
+def _series(coefficients: Array, x: Values) -> Array:
+    """Return Legendre sums, shape (n, c), of coefficients (n, 17, c) at x (n,)."""
+    total: Array = np.einsum("nk,nkc->nc", legendre.legvander(x, ORDER), coefficients)
+    return total
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DevelopedEdge(ArrayValue):
+    """The flat edge u = constant of one piece as a plane curve over t in [0, 1]; `reverse` runs it from v = 1 to 0."""
+
+    piece: FlatPiece
+    u: float
+    reverse: bool = False
+
+    def at(self, t: Values) -> Points2:
+        """Return the points at t, mm."""
+        v = 1.0 - t if self.reverse else t
+        return positions(self.piece, np.full_like(v, self.u), v)
+
+    def derivative(self, t: Values) -> Points2:
+        """Return d/dt of the points, mm."""
+        v = 1.0 - t if self.reverse else t
+        sign = -1.0 if self.reverse else 1.0
+        return sign * velocities(self.piece, np.full_like(v, self.u), v)

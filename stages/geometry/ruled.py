@@ -1,0 +1,160 @@
+"""Ruled patches S(u, v) = c0(v) + u p(v), u and v in [0, 1], and what is measured on them.
+
+Symbols: p = c1 - c0 runs along the ruling; S_v = c0' + u p'; n0 = p x c0' and n1 = p x c1' are normals at both ends of
+a ruling, n(u) = (1 - u) n0 + u n1; delta = p . (c0' x c1').  Warp is the angle between n0 and n1: 0 where the patch is
+developable, 180 deg where the edge of regression lies between the directrices.  Gaussian curvature is
+K = -delta^2 / |n(u)|^4.  Where a normal vanishes (an apex) the other one stands alone.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from stages.geometry.arrays import Array, ArrayValue, Points3, Values, dot, norm, unit
+from stages.geometry.curves import Bezier, Curve, difference, restrict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RuledPatch(ArrayValue):
+    """A ruled patch by both directrices and their difference p (kept apart so that no digits are lost near an apex)."""
+
+    c0: Curve
+    c1: Curve
+    p: Curve
+
+    @property
+    def polynomial(self) -> bool:
+        """Whether both directrices are polynomial, so that exact statements are possible."""
+        return isinstance(self.c0, Bezier) and isinstance(self.c1, Bezier)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frames(ArrayValue):
+    """Directrices and rulings at n values of v, each of shape (n, 3); d1, d2 are derivatives by v."""
+
+    c0: Points3
+    c0_d1: Points3
+    c0_d2: Points3
+    p: Points3
+    p_d1: Points3
+    p_d2: Points3
+    c1_d1: Points3
+
+
+def between(c0: Curve, c1: Curve) -> RuledPatch:
+    """Return the patch with these directrices."""
+    return RuledPatch(c0, c1, difference(c1, c0))
+
+
+def part(patch: RuledPatch, low: Fraction, high: Fraction) -> RuledPatch:
+    """Return the part of the patch over [low, high] of v."""
+    return between(restrict(patch.c0, low, high), restrict(patch.c1, low, high))
+
+
+def frames(patch: RuledPatch, v: Values) -> Frames:
+    """Return directrices, rulings and their derivatives at v."""
+    c0, p = patch.c0.jet(v, 2), patch.p.jet(v, 2)
+    return Frames(c0[0], c0[1], c0[2], p[0], p[1], p[2], patch.c1.jet(v, 1)[1])
+
+
+def at(patch: RuledPatch, u: Values, v: Values) -> Points3:
+    """Return the points S(u, v), mm."""
+    points: Points3 = (1.0 - u)[:, None] * patch.c0.jet(v, 0)[0] + u[:, None] * patch.c1.jet(v, 0)[0]
+    return points
+
+
+def end_normals(f: Frames) -> tuple[Points3, Points3]:
+    """Return n0 and n1, mm2."""
+    return np.cross(f.p, f.c0_d1), np.cross(f.p, f.c1_d1)
+
+
+def warp(patch: RuledPatch, v: Values) -> Values:
+    """Return the angle that the normal turns along each ruling, rad, in [0, pi].
+
+    By arctan2 of cross and dot product, since arccos loses half the digits near zero.  n0 x n1 is computed as
+    p delta, which does not cancel.  Zero where one of the normals vanishes, NaN where both do.
+    """
+    f = frames(patch, v)
+    n0, n1 = end_normals(f)
+    l0, l1 = norm(n0), norm(n1)
+    turn = norm(f.p) * np.abs(delta(f))
+    angle: Values = np.arctan2(turn, dot(n0, n1))
+    size = norm(f.p) * np.maximum(norm(f.c0_d1), norm(f.c1_d1))
+    gone0, gone1 = l0 <= VANISHED * size, l1 <= VANISHED * size
+    return np.where(gone0 & gone1, np.nan, np.where(gone0 | gone1, 0.0, angle))
+
+
+VANISHED = 1e-13
+"""A normal p x c' shorter than this share of |p||c'| is rounding noise: the product of doubles keeps 2e-16 of it."""
+
+
+def delta(f: Frames) -> Values:
+    """Return p . (c0' x c1') = p . (c0' x p'), mm3; the shorter of c1' and p' keeps more digits."""
+    shorter = np.where((norm(f.c1_d1) < norm(f.p_d1))[:, None], f.c1_d1, f.p_d1)
+    return dot(f.p, np.cross(f.c0_d1, shorter))
+
+
+def gaussian(patch: RuledPatch, v: Values) -> Values:
+    """Return the largest |K| on each ruling, 1/mm2: delta^2 over the fourth power of the shortest normal."""
+    f = frames(patch, v)
+    n0, n1 = end_normals(f)
+    shortest = norm(nearest_to_zero(n0, n1))
+    top = delta(f) ** 2
+    flat = np.abs(delta(f)) <= VANISHED * norm(f.p) * norm(f.c0_d1) * norm(f.c1_d1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(flat, 0.0, top / shortest**4)
+
+
+def nearest_to_zero(n0: Points3, n1: Points3) -> Points3:
+    """Return the shortest of the vectors (1 - u) n0 + u n1, u in [0, 1]."""
+    step = n1 - n0
+    length = dot(step, step)
+    u = np.clip(np.divide(-dot(n0, step), length, out=np.zeros_like(length), where=length > 0), 0.0, 1.0)
+    nearest: Points3 = n0 + u[:, None] * step
+    return nearest
+
+
+def across(f: Frames, u: float | Values) -> tuple[Points3, Points3]:
+    """Return S_v at u and its part perpendicular to the ruling, mm."""
+    s_v = f.c0_d1 + np.reshape(u, (-1, 1)) * f.p_d1
+    e = unit(f.p)
+    return s_v, s_v - dot(s_v, e)[:, None] * e
+
+
+def curvature(patch: RuledPatch, v: Values, u: float) -> Values:
+    """Return the signed curvature across the rulings at u, 1/mm: S_vv . N over |the part of S_v across the ruling|^2.
+
+    Positive towards N = p x S_v.  Infinite at an apex, NaN where the tangent plane is not defined.
+    """
+    f = frames(patch, v)
+    s_v, perpendicular = across(f, u)
+    normal = unit(np.cross(f.p, s_v))
+    # the normal of a developable is that of the whole ruling: take it where it is longest
+    n0, n1 = end_normals(f)
+    longer = np.where((norm(n0) > norm(n1))[:, None], n0, n1)
+    normal = np.where((norm(normal) > 0)[:, None], normal, unit(longer))
+    bend = dot(f.c0_d2 + u * f.p_d2 - 2.0 * _along(f, s_v)[:, None] * f.p_d1, normal)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        result: Values = bend / dot(perpendicular, perpendicular)
+    return result
+
+
+def _along(f: Frames, s_v: Points3) -> Values:
+    """Return the component of S_v along the ruling, as a multiple of p: removes the twist of the parametrisation."""
+    length = dot(f.p, f.p)
+    return np.divide(dot(s_v, f.p), length, out=np.zeros_like(length), where=length > 0)
+
+
+def regression(f: Frames) -> Values:
+    """Return u of the edge of regression on each ruling; infinite where the rulings are parallel."""
+    _, c = across(f, 0.0)
+    e = unit(f.p)
+    turn = f.p_d1 - dot(f.p_d1, e)[:, None] * e
+    length = dot(turn, turn)
+    return np.divide(-dot(c, turn), length, out=np.full_like(length, np.inf), where=length > 0)
+
+
+def box(points: Array) -> float:
+    """Return the diagonal of the bounding box of points, mm."""
+    return float(norm(points.max(axis=0) - points.min(axis=0)))
