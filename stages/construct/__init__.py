@@ -13,9 +13,9 @@ import numpy as np
 
 from stages.construct.assemble import patches_of
 from stages.construct.plates import plate
-from stages.construct.theorems import is_planar
 from stages.geometry.arrays import norm
 from stages.geometry.joins import join
+from stages.geometry.planarity import is_planar
 from stages.geometry.ruled import RuledPatch, at
 from stages.model.material import Part
 from stages.model.part import Flat

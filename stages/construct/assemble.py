@@ -6,6 +6,7 @@ One function per kind, chosen by the type of its specification.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 
 from stages.construct import minimax, theorems
 from stages.construct.curves import Chain, chain, ends, largest_gap, ruled_patches
@@ -24,7 +25,7 @@ from stages.construct.quintic import (
 )
 from stages.construct.strip import joins_detail, strip_ends
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import norm
+from stages.geometry.arrays import Values, Vector3, norm
 from stages.geometry.curves import Curve
 from stages.geometry.extremum import maximum
 from stages.geometry.ruled import RuledPatch
@@ -105,10 +106,14 @@ def _open(key: str, link: Chain, tol: Tolerances) -> tuple[Finding, ...]:
 def _apex_findings(curves: Sequence[Curve], apex: Vector) -> tuple[Finding, ...]:
     """Refuse an apex on the directrix, naming the place."""
     for i, curve in enumerate(curves):
-        least, v = maximum(lambda t, c=curve: -norm(c.jet(t, 0)[0] - floats(apex)))
+        least, v = maximum(partial(_nearness, curve, floats(apex)))
         if -least <= ON_CURVE * float(norm(ends(curve)[0] - floats(apex))):
             return (Finding("apex-on-directrix", "the apex lies on the directrix", True, {"piece": i, "v": v}),)
     return ()
+
+
+def _nearness(curve: Curve, point: Vector3, v: Values) -> Values:
+    return -norm(curve.jet(v, 0)[0] - point)
 
 
 ON_CURVE = 1e-9

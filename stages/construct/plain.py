@@ -13,10 +13,10 @@ import numpy as np
 
 from stages.construct.curves import Chain, chain, plane_axes
 from stages.construct.quintic import Vector, combine, scaling, vector
+from stages.geometry import contours
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector3, cross2, dot, norm, unit
 from stages.geometry.curves import Bezier, Circular, Curve, affine, exactly
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
-from stages.geometry.quadrature import integral
 from stages.geometry.ruled import RuledPatch
 from stages.model.part import Cone, Cylinder, Plane
 
@@ -139,21 +139,9 @@ def in_plane(link: Chain, frame: PlaneFrame, *, clockwise: bool) -> tuple[PlaneC
     """Return the edges of a closed chain in the plane, run in the asked sense."""
     axes = np.stack([frame.x, frame.y])
     edges = [_edge(curve, frame.origin, axes) for curve in link.curves]
-    if (enclosed(edges) < 0.0) == clockwise:
+    if (contours.area(edges) < 0.0) == clockwise:
         return tuple(edges)
     return tuple(_reversed(edge) for edge in edges[::-1])
-
-
-def enclosed(edges: Sequence[PlaneCurve]) -> float:
-    """Return the signed area inside closed edges, mm2 (Green's theorem)."""
-
-    return sum((_green(edge) for edge in edges), 0.0)
-
-
-def _green(edge: PlaneCurve) -> float:
-    """Return half the integral of x dy - y dx along an edge, mm2."""
-    total = integral(lambda t: 0.5 * cross2(edge.at(t), edge.derivative(t))[:, None], "area of a contour")
-    return float(total[0])
 
 
 def _edge(curve: Curve, origin: Vector3, axes: Array) -> PlaneCurve:

@@ -3,7 +3,8 @@
 import numpy as np
 
 from stages.construct.curves import Chain, chain, largest_gap
-from stages.construct.plain import closed_chain, enclosed, in_plane, plane_of
+from stages.construct.plain import closed_chain, in_plane, plane_of
+from stages.geometry import contours
 from stages.geometry.arrays import norm
 from stages.model.material import Part
 from stages.model.part import Flat
@@ -23,7 +24,7 @@ def plate(part: Part, spec: Flat, tol: Tolerances) -> Outcome[Surface | None]:
         return Outcome(None, StageReport("construct", part.name, (*metrics, planar), tuple(findings)))
     outline = in_plane(links[0], frame, clockwise=False)
     holes = tuple(in_plane(link, frame, clockwise=True) for link in links[1:])
-    if enclosed(outline) <= 0.0:
+    if contours.area(outline) <= 0.0:
         findings.append(Finding("no-area", "the outline encloses no area", fatal=True))
     report = StageReport("construct", part.name, (*metrics, planar), tuple(findings))
     points = np.concatenate([edge.at(np.linspace(0.0, 1.0, 33)) for edge in outline])

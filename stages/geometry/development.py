@@ -85,16 +85,17 @@ def _axes(phi: Array) -> tuple[Array, Array]:
 
 
 def _rates(patch: RuledPatch, v: Values) -> Array:
-    """Return phi' times the patch's length scale, c0'.e, c0'.w and |p|, shape (n, 4), all mm.
+    """Return phi' times the patch's length scale, c0'.e, c0'.w, |p|, |c0'| and |c1'|, shape (n, 6), all mm.
 
-    |p| is here only to be resolved: positions depend on it as well.
+    The last three are here only to be resolved: positions depend on |p|, and lengths measured on them on the speeds.
     """
     f = frames(patch, v)
     length = norm(f.p)
     e = unit(f.p)
     w = unit(across(f, 0.5)[1])
     turn = np.divide(dot(f.p_d1, w), length, out=np.zeros_like(length), where=length > 0)
-    return np.stack([turn * _scale(patch), dot(f.c0_d1, e), dot(f.c0_d1, w), length], axis=1)
+    speeds = norm(f.c0_d1), norm(f.c1_d1)
+    return np.stack([turn * _scale(patch), dot(f.c0_d1, e), dot(f.c0_d1, w), length, *speeds], axis=1)
 
 
 def _scale(patch: RuledPatch) -> float:

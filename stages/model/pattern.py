@@ -4,6 +4,7 @@ Flat frame, mm: c0(0) at the origin, the first ruling along +x, seen from the si
 """
 
 from dataclasses import dataclass
+from typing import Literal
 
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import ArrayValue, Points2, Vector2
@@ -37,7 +38,7 @@ class FlatPattern(ArrayValue):
     """One part, flat.
 
     quantity: copies wanted.
-    rotations: angles in degrees it may be turned by in the nest; None: what the nest allows.
+    rotations: angles in degrees it may be turned by in the nest, or "free"; None: what the nest allows.
     label_at: a point inside the part where its name may be written, as far from the contours as can be had.
     corners: c0(0), c1(0), c1(1), c0(1) in the flat frame, shape (4, 2); those of the bounding box for a plate.
     """
@@ -49,6 +50,6 @@ class FlatPattern(ArrayValue):
     marks: tuple[Mark, ...]
     label_at: Vector2
     corners: Points2
-    rotations: tuple[float, ...] | None = None
+    rotations: tuple[float, ...] | Literal["free"] | None = None
     thickness_mm: float | None = None
     density_kg_m3: float | None = None

@@ -1,0 +1,63 @@
+"""The outline of a developed strip: exact edges, corners, the lines and arcs that will be cut."""
+
+import numpy as np
+import shapely
+
+from stages.geometry import arcpath, biarc
+from stages.geometry.arcpath import ArcPath
+from stages.geometry.arrays import Array, Points2, Vector2, norm
+from stages.geometry.development import DevelopedEdge, Development, positions
+from stages.geometry.plane import PlaneCurve, Segment
+from stages.model.pattern import Contour
+
+
+def corners(development: Development) -> Points2:
+    """Return c0(0), c1(0), c1(1), c0(1) in the flat frame, mm."""
+    u, zero, one = np.array([0.0, 1.0]), np.zeros(2), np.ones(2)
+    start = positions(development.pieces[0], u, zero)
+    end = positions(development.pieces[-1], u, one)
+    return np.stack([start[0], start[1], end[1], end[0]])
+
+
+def edges(development: Development) -> tuple[PlaneCurve, ...]:
+    """Return the outline counter-clockwise from c0(0): first ruling, c1, last ruling, c0 back."""
+    a, b, c, d = corners(development)
+    there = [DevelopedEdge(piece, 1.0) for piece in development.pieces]
+    back = [DevelopedEdge(piece, 0.0, reverse=True) for piece in development.pieces[::-1]]
+    return (Segment(a, b), *there, Segment(c, d), *back)
+
+
+def piece_gap(development: Development) -> float:
+    """Return the largest distance between the flat end of a piece and the flat start of the next, mm."""
+    u = np.array([0.0, 1.0])
+    gaps = [
+        float(norm(positions(a, u, np.ones(2)) - positions(b, u, np.zeros(2))).max())
+        for a, b in zip(development.pieces[:-1], development.pieces[1:], strict=True)
+    ]
+    return max(gaps, default=0.0)
+
+
+def contour(exact: tuple[PlaneCurve, ...], chord_mm: float, name: str = "") -> Contour:
+    """Return the contour with its lines and arcs.  Raises NoSolutionError if they do not keep the chord."""
+    return Contour(exact, biarc.trace(exact, accuracy=chord_mm), chord_mm, name)
+
+
+def overlap(path: ArcPath, chord_mm: float) -> float:
+    """Return the area that the outline covers twice, mm2; 0 for a simple outline.
+
+    The signed area counts a doubly covered region twice; by the even-odd rule it does not count at all.
+    """
+    ring = shapely.Polygon(arcpath.polygon(path, accuracy=chord_mm))
+    if ring.is_valid:
+        return 0.0
+    even_odd = float(shapely.make_valid(ring).area)
+    return max((abs(arcpath.area(path)) - even_odd) / 2.0, float(np.finfo(float).tiny))
+
+
+def label_place(outer: ArcPath, inner: tuple[ArcPath, ...], chord_mm: float) -> Vector2:
+    """Return the point of the part that is farthest from its contours (to 1 % of the size), mm."""
+    rings: list[Array] = [arcpath.polygon(path, accuracy=chord_mm) for path in (outer, *inner)]
+    area = shapely.make_valid(shapely.Polygon(rings[0], rings[1:]))
+    size = float(norm(np.ptp(rings[0], axis=0)))
+    point = shapely.get_point(shapely.maximum_inscribed_circle(area, tolerance=size / 100.0), 0)
+    return np.array([point.x, point.y])
