@@ -2,14 +2,30 @@
 
 A path is an array of vertices and one bulge per vertex: the bulge b_i = tan(sweep / 4) bends the piece from vertex i
 to vertex i + 1 (the last one closes the path), positive counter-clockwise, 0 straight.
+
+Points on a piece are computed from its chord and sweep, never from its centre: the centre of a nearly straight arc is
+so far away that differences from it lose all digits.  A single piece cannot be a full circle; two of them can.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import ArrayValue, Points2, Values, cross2, norm
+from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, cross2, dot, norm, unit
 from stages.geometry.rigid import Rigid2, apply
+
+SMALL_SWEEP = 0.1
+"""Below this the area of a segment is summed as a series: its next term is 1e-14, the closed form loses 1e-13."""
+
+SEGMENT_SERIES = (1.0 / 25200.0, 1.0 / 840.0, 1.0 / 30.0, 1.0)
+"""Of 12 (a - sin a) / (8 a sin^2(a/2)) in powers of a^2, highest first."""
+
+ROUNDING = 1e-9
+"""What a count of equal parts may be over a whole number by rounding alone."""
+
+QUARTER = np.pi / 2.0
+WIDEST_STEP = np.pi / 3.0
+"""A polygon never takes a longer step than this along an arc, however coarse it may be."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +51,8 @@ class ArcPath(ArrayValue):
 
 def sweeps(path: ArcPath) -> Values:
     """Return the signed sweep of each piece in rad, closing piece included on a closed path."""
-    return 4.0 * np.arctan(path.bulges[: piece_count(path)])
+    sweep: Values = 4.0 * np.arctan(path.bulges[: piece_count(path)])
+    return sweep
 
 
 def piece_count(path: ArcPath) -> int:
@@ -53,27 +70,42 @@ def centres(path: ArcPath) -> Points2:
     """Return the centres of the arcs, shape (pieces, 2); NaN for straight pieces."""
     start, end = chords(path)
     bulge = path.bulges[: piece_count(path)]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        offset = (1.0 / bulge - bulge) / 4.0
+    straight = bulge == 0.0
+    safe = np.where(straight, 1.0, bulge)
+    offset = (1.0 / safe - safe) / 4.0
     chord = end - start
     centre = (start + end) / 2.0 + offset[:, None] * np.stack([-chord[:, 1], chord[:, 0]], axis=1)
-    return np.where((bulge == 0.0)[:, None], np.nan, centre)
+    return np.where(straight[:, None], np.nan, centre)
 
 
 def radii(path: ArcPath) -> Values:
     """Return the radii of the pieces in mm; infinite for straight ones."""
     start, end = chords(path)
     bulge = np.abs(path.bulges[: piece_count(path)])
-    with np.errstate(divide="ignore"):
-        return np.where(bulge == 0.0, np.inf, norm(end - start) * (1.0 / bulge + bulge) / 4.0)
+    straight = bulge == 0.0
+    safe = np.where(straight, 1.0, bulge)
+    return np.where(straight, np.inf, norm(end - start) * (1.0 / safe + safe) / 4.0)
+
+
+def curvatures(path: ArcPath) -> Values:
+    """Return the signed curvature of each piece in 1/mm, positive counter-clockwise; 0 for a piece of no length."""
+    start, end = chords(path)
+    bulge = path.bulges[: piece_count(path)]
+    chord = norm(end - start)
+    return np.divide(4.0 * bulge, chord * (1.0 + bulge**2), out=np.zeros_like(chord), where=chord > 0.0)
+
+
+def lengths(path: ArcPath) -> Values:
+    """Return the length of each piece in mm; exact."""
+    start, end = chords(path)
+    half = np.abs(sweeps(path)) / 2.0
+    arc: Values = norm(end - start) / np.sinc(half / np.pi)
+    return arc
 
 
 def length(path: ArcPath) -> float:
     """Return the length in mm; exact."""
-    start, end = chords(path)
-    chord = norm(end - start)
-    half = np.abs(sweeps(path)) / 2.0
-    return float(np.sum(chord / np.sinc(half / np.pi)))
+    return float(np.sum(lengths(path)))
 
 
 def area(path: ArcPath) -> float:
@@ -87,12 +119,79 @@ def area(path: ArcPath) -> float:
     small = np.abs(sweep) < SMALL_SWEEP
     safe = np.where(small, 1.0, sweep)
     closed_form = (safe - np.sin(safe)) / (8.0 * np.sin(safe / 2.0) ** 2)
-    series = sweep / 12.0 * (1.0 + sweep**2 / 30.0)
+    series = sweep / 12.0 * np.polyval(np.array(SEGMENT_SERIES), np.where(small, sweep, 0.0) ** 2)
     return float(polygon_part + np.sum(chord**2 * np.where(small, series, closed_form)))
 
 
-SMALL_SWEEP = 1e-3
-"""Below this the two-term series of a segment's area is exact to rounding (next term a^4/1120), the closed form is not."""
+def directions(path: ArcPath) -> tuple[Values, Values]:
+    """Return the direction angles at the start and at the end of each piece, in rad."""
+    start, end = chords(path)
+    chord = end - start
+    along = np.arctan2(chord[:, 1], chord[:, 0])
+    half = sweeps(path) / 2.0
+    return along - half, along + half
+
+
+def joint_turns(path: ArcPath) -> Values:
+    """Return the turn at each joint between two pieces in rad, in (-pi, pi]; 0 where they join smoothly.
+
+    Closed: joint i lies at vertex i.  Open: at vertex i + 1.
+    """
+    first, last = directions(path)
+    turn = first - np.roll(last, 1) if path.closed else first[1:] - last[:-1]
+    wrapped: Values = np.pi - np.mod(np.pi - turn, 2.0 * np.pi)
+    return wrapped
+
+
+def along(path: ArcPath, piece: Indices, fraction: Values) -> Points2:
+    """Return the points at `fraction` of the sweep of the pieces, in mm; exact for any sweep, 0 included."""
+    start, end = chords(path)
+    chord = (end - start)[piece]
+    half = sweeps(path)[piece] / 2.0
+    # the chord from the start to the point at f has length chord * sin(f a/2) / sin(a/2), turned by (f - 1) a/2
+    scale = fraction * np.sinc(fraction * half / np.pi) / np.sinc(half / np.pi)
+    points: Points2 = start[piece] + _turned(chord, (fraction - 1.0) * half) * scale[:, None]
+    return points
+
+
+def distances(points: Points2, path: ArcPath, piece: Indices) -> Values:
+    """Return the distance of each point to its piece of the path, in mm; exact for sweeps up to a half circle.
+
+    To the carrier where the point lies between the normals at both ends of the piece, to the nearer end elsewhere.
+    """
+    start, end = (ends[piece] for ends in chords(path))
+    half = (sweeps(path) / 2.0)[piece]
+    forward = unit(end - start)
+    leaving, arriving = _turned(forward, -half), _turned(forward, half)
+    between = (dot(points - start, leaving) >= 0.0) & (dot(points - end, arriving) <= 0.0)
+    carrier = carrier_distance(points - start, leaving, curvatures(path)[piece])
+    return np.where(between, np.abs(carrier), np.minimum(norm(points - start), norm(points - end)))
+
+
+def carrier_distance(offset: Array, tangent: Array, curvature: Array) -> Array:
+    """Return the signed distance to the circle through the origin with that unit tangent and curvature, in mm.
+
+    Positive on the left of the tangent.  No centre is used, so it is stable from straight lines to tight arcs.
+    """
+    twice = 2.0 * cross2(tangent, offset) - curvature * dot(offset, offset)
+    root: Array = np.sqrt(np.maximum(1.0 - curvature * twice, 0.0))
+    distance: Array = twice / (1.0 + root)
+    return distance
+
+
+def split(path: ArcPath, *, max_bulge: float) -> ArcPath:
+    """Return the same path with its arcs cut into equal parts, none with a bulge above `max_bulge`; exact."""
+    count = np.maximum(np.ceil(np.abs(sweeps(path)) / (4.0 * np.arctan(max_bulge)) - ROUNDING), 1.0).astype(np.int64)
+    if (count == 1).all():
+        return path
+    piece = np.repeat(np.arange(count.size), count)
+    within = np.arange(piece.size) - np.repeat(np.cumsum(count) - count, count)
+    vertices = along(path, piece, within / count[piece])
+    vertices[within == 0] = path.vertices[: count.size]
+    bulges = np.tan(sweeps(path) / (4.0 * count))[piece]
+    if path.closed:
+        return ArcPath(vertices, bulges, closed=True)
+    return ArcPath(np.vstack([vertices, path.vertices[-1:]]), np.append(bulges, 0.0), closed=False)
 
 
 def transform(path: ArcPath, motion: Rigid2) -> ArcPath:
@@ -112,17 +211,14 @@ def backwards(path: ArcPath) -> ArcPath:
 
 def bounds(path: ArcPath) -> tuple[float, float, float, float]:
     """Return the exact extent (x least, y least, x most, y most) in mm, arcs included."""
-    points = [path.vertices]
-    start, _ = chords(path)
-    centre, radius, sweep = centres(path), radii(path), sweeps(path)
-    for i in np.flatnonzero(sweep):
-        first = np.arctan2(*(start[i] - centre[i])[::-1])
-        low, high = sorted((first, first + sweep[i]))
-        quarters = np.arange(np.ceil(low / (np.pi / 2)), np.floor(high / (np.pi / 2)) + 1) * (np.pi / 2)
-        points.append(centre[i] + radius[i] * np.stack([np.cos(quarters), np.sin(quarters)], axis=1))
-    every = np.concatenate(points)
-    low_x, low_y = every.min(axis=0)
-    high_x, high_y = every.max(axis=0)
+    first, _ = directions(path)
+    sweep = sweeps(path)
+    # an arc is furthest out where its direction is a multiple of 90 degrees
+    turn = np.where(sweep[:, None] >= 0.0, 1.0, -1.0) * (np.arange(4) * QUARTER - first[:, None])
+    turn = np.mod(turn, 2.0 * np.pi)
+    piece, quarter = np.nonzero(turn < np.abs(sweep)[:, None])
+    every = np.concatenate([path.vertices, along(path, piece, turn[piece, quarter] / np.abs(sweep)[piece])])
+    (low_x, low_y), (high_x, high_y) = every.min(axis=0), every.max(axis=0)
     return float(low_x), float(low_y), float(high_x), float(high_y)
 
 
@@ -132,25 +228,40 @@ def polygon(path: ArcPath, *, accuracy: float, outside: bool = False) -> Points2
     The last point of a closed path is not repeated.  With `outside`, the polygon of a closed counter-clockwise path
     contains it: arcs that swell outward are replaced by tangents, hollow ones by chords (a part may only grow).
     """
-    start, end = chords(path)
-    centre, radius, sweep = centres(path), radii(path), sweeps(path)
-    points = [path.vertices[:0]]
-    for i in range(start.shape[0]):
-        points.append(start[i : i + 1])
-        if sweep[i] == 0.0:
-            continue
-        swelling = outside and sweep[i] > 0.0
-        count = _steps(abs(sweep[i]), radius[i], accuracy)
-        reach = radius[i] / np.cos(sweep[i] / count / 2.0) if swelling else radius[i]
-        fraction = (np.arange(count) + 0.5) / count if swelling else np.arange(1, count) / count
-        angle = np.arctan2(*(start[i] - centre[i])[::-1]) + sweep[i] * fraction
-        points.append(centre[i] + reach * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-    if not path.closed:
-        points.append(end[-1:])
-    return np.concatenate(points)
+    sweep = sweeps(path)
+    steps = _steps(np.abs(sweep), radii(path), accuracy)
+    swelling = (sweep > 0.0) if outside else np.zeros(sweep.size, dtype=bool)
+    # a piece gives its start and, if it swells, the corner of two tangents in each step, else the inner chord points
+    count = np.where(swelling, steps + 1, steps)
+    piece = np.repeat(np.arange(count.size), count)
+    within = np.arange(piece.size) - np.repeat(np.cumsum(count) - count, count)
+    corner = swelling[piece] & (within > 0)
+    fraction = np.where(corner, within - 0.5, within) / steps[piece]
+    points = along(path, piece, fraction)
+    points[corner] += _overshoot(path, steps, piece[corner], fraction[corner])
+    points[within == 0] = path.vertices[: count.size]
+    return points if path.closed else np.vstack([points, path.vertices[-1:]])
 
 
-def _steps(sweep: float, radius: float, accuracy: float) -> int:
-    """Return into how many equal parts an arc is cut so that chord and tangent stay within `accuracy`."""
-    step = 2.0 * np.arccos(max(1.0 - accuracy / (radius + accuracy), 0.0))
-    return max(int(np.ceil(sweep / step)), int(np.ceil(sweep / (np.pi / 3))))
+def _overshoot(path: ArcPath, steps: Indices, piece: Indices, fraction: Values) -> Points2:
+    """Return how far the corner of two tangents lies beyond the middle of its step, to the right of the path."""
+    first, _ = directions(path)
+    sweep = sweeps(path)[piece]
+    angle = first[piece] + sweep * fraction - QUARTER
+    half = sweep / steps[piece] / 2.0
+    reach = radii(path)[piece] * 2.0 * np.sin(half / 2.0) ** 2 / np.cos(half)
+    beyond: Points2 = reach[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return beyond
+
+
+def _steps(sweep: Values, radius: Values, accuracy: float) -> Indices:
+    """Return into how many equal parts arcs are cut so that chord and tangent stay within `accuracy`."""
+    step = np.minimum(4.0 * np.arcsin(np.sqrt(accuracy / (radius + accuracy) / 2.0)), WIDEST_STEP)
+    curved = sweep > 0.0
+    return np.where(curved, np.ceil(sweep / np.where(curved, step, 1.0) - ROUNDING), 1.0).clip(1.0).astype(np.int64)
+
+
+def _turned(vectors: Points2, angle: Values) -> Points2:
+    """Return the vectors turned by the angles in rad, counter-clockwise."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]], axis=1)

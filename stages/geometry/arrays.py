@@ -7,7 +7,7 @@ at all (it would double the time to start), and there the names stand for plain 
 import dataclasses
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,10 @@ EPS = float(np.finfo(np.float64).eps)
 """Spacing of the doubles at 1: 2.2e-16."""
 
 
+ValueT = TypeVar("ValueT", bound="ArrayValue")
+"""The value's own type; `typing.Self` is refused by the checks that run with the tests."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ArrayValue:
     """A read-only value: its arrays are copied, made float64 and locked, then `check` is called.
@@ -50,7 +54,7 @@ class ArrayValue:
     def check(self) -> None:
         """Raise ValueError if a rule of this value is broken."""
 
-    def replace(self, **changes: object) -> Self:
+    def replace(self: ValueT, **changes: object) -> ValueT:
         """Return a copy with some fields changed."""
         return dataclasses.replace(self, **changes)
 

@@ -4,6 +4,8 @@ Between two lines the part bends by the same angle; equal spacing would do so on
 turning is summed over 1024 chords of the normal per piece: exact enough for a place to etch (1e-6 of the part).
 """
 
+import math
+
 import numpy as np
 
 from stages.geometry.arcpath import ArcPath
@@ -31,7 +33,7 @@ def ruling_marks(development: Development, spec: MarkSpec) -> tuple[Mark, ...]:
 
 def _steps(total: float, spec: MarkSpec) -> int:
     """Return into how many equal turns the total is divided so that none exceeds `max_angle`."""
-    return max(ceil(total / np.radians(float(spec.max_angle or 1))), 1)
+    return max(math.ceil(total / math.radians(float(spec.max_angle or 1))), 1)
 
 
 FLAT = 1e-9
