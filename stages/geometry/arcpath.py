@@ -10,6 +10,7 @@ so far away that differences from it lose all digits.  A single piece cannot be 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, cross2, dot, norm, unit
 from stages.geometry.rigid import Rigid2, apply
@@ -19,6 +20,9 @@ SMALL_SWEEP = 0.1
 
 SEGMENT_SERIES = (1.0 / 25200.0, 1.0 / 840.0, 1.0 / 30.0, 1.0)
 """Of 12 (a - sin a) / (8 a sin^2(a/2)) in powers of a^2, highest first."""
+
+FLAT_BULGE = 1e-15
+"""An arc flatter than this is a line: its height over the chord is under the rounding of the chord's ends."""
 
 ROUNDING = 1e-9
 """What a count of equal parts may be over a whole number by rounding alone."""
@@ -51,8 +55,14 @@ class ArcPath(ArrayValue):
 
 def sweeps(path: ArcPath) -> Values:
     """Return the signed sweep of each piece in rad, closing piece included on a closed path."""
-    sweep: Values = 4.0 * np.arctan(path.bulges[: piece_count(path)])
+    sweep: Values = 4.0 * np.arctan(_bends(path))
     return sweep
+
+
+def _bends(path: ArcPath) -> Values:
+    """Return the bulges of the pieces, those of lines in all but name set to 0."""
+    bulge = path.bulges[: piece_count(path)]
+    return np.where(np.abs(bulge) < FLAT_BULGE, 0.0, bulge)
 
 
 def piece_count(path: ArcPath) -> int:
@@ -69,7 +79,7 @@ def chords(path: ArcPath) -> tuple[Points2, Points2]:
 def centres(path: ArcPath) -> Points2:
     """Return the centres of the arcs, shape (pieces, 2); NaN for straight pieces."""
     start, end = chords(path)
-    bulge = path.bulges[: piece_count(path)]
+    bulge = _bends(path)
     straight = bulge == 0.0
     safe = np.where(straight, 1.0, bulge)
     offset = (1.0 / safe - safe) / 4.0
@@ -81,7 +91,7 @@ def centres(path: ArcPath) -> Points2:
 def radii(path: ArcPath) -> Values:
     """Return the radii of the pieces in mm; infinite for straight ones."""
     start, end = chords(path)
-    bulge = np.abs(path.bulges[: piece_count(path)])
+    bulge = np.abs(_bends(path))
     straight = bulge == 0.0
     safe = np.where(straight, 1.0, bulge)
     return np.where(straight, np.inf, norm(end - start) * (1.0 / safe + safe) / 4.0)
@@ -90,7 +100,7 @@ def radii(path: ArcPath) -> Values:
 def curvatures(path: ArcPath) -> Values:
     """Return the signed curvature of each piece in 1/mm, positive counter-clockwise; 0 for a piece of no length."""
     start, end = chords(path)
-    bulge = path.bulges[: piece_count(path)]
+    bulge = _bends(path)
     chord = norm(end - start)
     return np.divide(4.0 * bulge, chord * (1.0 + bulge**2), out=np.zeros_like(chord), where=chord > 0.0)
 
@@ -243,7 +253,7 @@ def polygon(path: ArcPath, *, accuracy: float, outside: bool = False) -> Points2
     return points if path.closed else np.vstack([points, path.vertices[-1:]])
 
 
-def _overshoot(path: ArcPath, steps: Indices, piece: Indices, fraction: Values) -> Points2:
+def _overshoot(path: ArcPath, steps: NDArray[np.int64], piece: Indices, fraction: Values) -> Points2:
     """Return how far the corner of two tangents lies beyond the middle of its step, to the right of the path."""
     first, _ = directions(path)
     sweep = sweeps(path)[piece]

@@ -10,12 +10,13 @@ A surface worse than `tol.accept` is refused with the place and the amount.  Str
 
 import numpy as np
 
-from stages.geometry.planarity import is_planar
+from stages.errors import NoSolutionError
 from stages.geometry.ruled import RuledPatch
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.surface import Certificate, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
 from stages.verify import sampled
+from stages.verify.bending import smallest_radius
 from stages.verify.certificate import Certified, certify
 from stages.verify.sampled import Extreme
 
@@ -30,14 +31,15 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
         return _plate(surface)
     warps = [sampled.largest_warp(patch, i) for i, patch in enumerate(surface.patches)]
     proofs = [_proof(patch, warp) for patch, warp in zip(surface.patches, warps, strict=True)]
-    findings = [*_singular(surface, proofs), *_bending_findings(surface)]
+    radius, bending = smallest_radius(surface)
+    findings = [*_singular(surface, proofs), *bending]
     warp, proved = _warp(warps, proofs, WARP_LIMIT_DEG[tol.accept])
     metrics = (
         warp,
         _gaussian(surface, proofs),
-        _radius(surface),
+        radius,
         Metric("regular", _regular(surface, proofs), "", "proved" if proved else "sampled"),
-        Metric("turn_deg", abs(sum(sampled.turning(patch) for patch in surface.patches)) * DEG, "deg"),
+        _turning(surface),
     )
     reached = class_by_warp(float(warp.value or 0.0))
     if reached is None or not tol.accepts(reached):
@@ -76,9 +78,10 @@ def _warp(warps: list[Extreme], proofs: list[Certified | None], limit: float) ->
     worst = max(warps, key=lambda extreme: extreme.value)
     if not proved:
         return Metric("max_warp_deg", worst.value * DEG, "deg", "sampled", limit, worst.where), False
-    bounds = [(proof.warp_rad, extreme) for proof, extreme in zip(proofs, warps, strict=True) if proof is not None]
-    value, extreme = max(bounds, key=lambda pair: pair[0])
-    return Metric("max_warp_deg", value * DEG, "deg", "proved", limit, extreme.where), True
+    bounds = [(proof, extreme) for proof, extreme in zip(proofs, warps, strict=True) if proof is not None]
+    proof, extreme = max(bounds, key=lambda pair: pair[0].warp_rad)
+    where = extreme.where if proof.where is None else {"v": extreme.piece + proof.where}
+    return Metric("max_warp_deg", proof.warp_rad * DEG, "deg", "proved", limit, where), True
 
 
 def _gaussian(surface: RuledSurface, proofs: list[Certified | None]) -> Metric:
@@ -93,52 +96,20 @@ def _gaussian(surface: RuledSurface, proofs: list[Certified | None]) -> Metric:
     return Metric("max_gaussian_curvature", value if np.isfinite(value) else None, "", "sampled", None, worst.where)
 
 
-def _radius(surface: RuledSurface) -> Metric:
-    """Return the smallest inside bending radius, mm: that of the middle surface less half the thickness."""
-    flat, proved = is_planar(surface.patches)
-    if flat:
-        return Metric("min_bend_radius_mm", None, "mm", "proved" if proved else "sampled")
-    found = [sampled.largest_curvature(patch, i) for i, patch in enumerate(surface.patches)]
-    worst = max(found, key=lambda extreme: extreme.value)
-    if worst.value * surface.size_mm <= STRAIGHT:
-        return Metric("min_bend_radius_mm", None, "mm")
-    half = (surface.part.material.thickness_mm or 0.0) / 2.0
-    return Metric("min_bend_radius_mm", max(1.0 / worst.value - half, 0.0), "mm", "sampled", None, worst.where)
-
-
-STRAIGHT = 1e-9
-"""A curvature below this share of 1/D bends the part by less than a nanometre per metre: flat."""
-
-
-def _bending_findings(surface: RuledSurface) -> list[Finding]:
-    """Refuse what bends more sharply than the material allows."""
-    material, radius = surface.part.material, _radius(surface)
-    if radius.value is None or isinstance(radius.value, bool):
-        return []
-    findings = []
-    least = material.bend_radius_min_mm
-    if least is not None and radius.value < least:
-        message = f"bends to an inside radius of {radius.value:.4g} mm, the material allows {least:.4g} mm"
-        findings.append(Finding("bend-radius", message, True, radius.where))
-    if material.max_strain is not None and material.thickness_mm:
-        strain = 1.0 / (2.0 * radius.value / material.thickness_mm + 1.0)
-        if strain > material.max_strain:
-            message = f"the outer fibre stretches by {strain:.3%}, the material allows {material.max_strain:.3%}"
-            findings.append(Finding("bend-strain", message, True, radius.where))
-    return findings
+def _turning(surface: RuledSurface) -> Metric:
+    """Return the total turning of the rulings in the flat; not defined where it does not resolve (a fold)."""
+    try:
+        return Metric("turn_deg", abs(sum(sampled.turning(patch) for patch in surface.patches)) * DEG, "deg")
+    except NoSolutionError:
+        return Metric("turn_deg", None, "deg")
 
 
 def _regular(surface: RuledSurface, proofs: list[Certified | None]) -> bool:
     """Return whether the normal vanishes nowhere, edges included."""
     return all(
-        proof.regular if proof is not None and proof.positive else _sampled_regular(patch)
+        sampled.is_regular(patch) if proof is None or proof.positive is None else proof.regular
         for patch, proof in zip(surface.patches, proofs, strict=True)
     )
-
-
-def _sampled_regular(patch: RuledPatch) -> bool:
-    extreme = sampled.largest_curvature(patch, 0)
-    return bool(np.isfinite(extreme.value))
 
 
 def _singular(surface: RuledSurface, proofs: list[Certified | None]) -> list[Finding]:

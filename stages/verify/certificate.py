@@ -27,7 +27,9 @@ from stages.geometry.ruled import RuledPatch
 RAISES = (1e-10, 1e-6, 1e-3, 0.5, 2.0, 9.0, 99.0)
 """The bound tried is (1 + this) times the sampled value; beyond 100 times the proof is given up."""
 SPLITS = 4000
-"""Halvings that one proof may take: 2**-40 wide at one place, or 1/4000 everywhere."""
+"""Halvings that one proof may take: 2**-40 wide at some places, or 1/4000 everywhere."""
+NARROWEST = 2.0**-40
+"""Below this width a place stays open: a zero without a change of sign, which no halving decides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +39,9 @@ class Certified:
     developable: K == 0 in exact arithmetic.
     warp_rad, curvature: upper bounds over the whole patch (1/mm2); infinite where none was proved.
     regular: the normal vanishes nowhere, edges included.
-    positive: n0.n1 > 0 inside (the edge of regression stays out); None if neither that nor the contrary was proved.
-    where: a v at which n0.n1 <= 0, if there is one.
+    positive: n0.n1 > 0 inside (the edge of regression stays out); False if n0.n1 < 0 somewhere (or the patch has no
+        normal at all); None if neither was proved, as where the edge of regression touches an edge inside.
+    where: a v at which n0.n1 < 0, if there is one.
     """
 
     developable: bool
@@ -108,7 +111,7 @@ def certify(patch: RuledPatch, at: float) -> Certified:
         return Certified(made.delta.is_zero, pi, inf, regular=False, positive=False, where=0.5)
     positive, where = proved_positive(made.dot)
     if not positive:
-        return Certified(made.delta.is_zero, pi, inf, regular=False, positive=positive, where=where)
+        return Certified(made.delta.is_zero, pi, inf, False, positive, where if positive is False else None)
     if made.delta.is_zero:
         return Certified(True, 0.0, 0.0, regular=not made.vanishing, positive=True)
     warp = _warp_bound(made, Fraction(at))
@@ -165,17 +168,21 @@ ROUNDINGS = 16 * 2.0**-53
 
 
 def proved_positive(f: Polynomial) -> tuple[bool | None, float | None]:
-    """Return True if f > 0 on (0, 1) is proved, False with a v where f <= 0, None with a v where it stays open."""
+    """Return True if f > 0 on [0, 1] is proved, False with a v where f < 0, None with a v where it stays open."""
     pending = [(bernstein.whole(f), 0.0, 1.0)]
+    undecided: float | None = None
     for _ in range(SPLITS):
         if not pending:
-            return True, None
+            return (True, None) if undecided is None else (None, undecided)
         piece, low, high = pending.pop()
         if min(piece.b) > 0:
             continue
         for value, v in ((piece.b[0], low), (piece.b[-1], high)):
-            if value <= 0:
+            if value < 0:
                 return False, v
+        if high - low <= NARROWEST:
+            undecided = low
+            continue
         middle = (low + high) / 2.0
         left, right = bernstein.halves(piece)
         pending += [(right, middle, high), (left, low, middle)]

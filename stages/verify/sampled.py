@@ -10,10 +10,10 @@ from functools import partial
 import numpy as np
 
 from stages.geometry import ruled
-from stages.geometry.arrays import Values, dot, norm, unit
+from stages.geometry.arrays import Values, norm
 from stages.geometry.extremum import maximum
 from stages.geometry.quadrature import integral
-from stages.geometry.ruled import RuledPatch, across, end_normals, frames
+from stages.geometry.ruled import RuledPatch, end_normals, frames, turn_rate
 from stages.model.report import Where
 
 
@@ -76,6 +76,23 @@ def weakest_normal(patch: RuledPatch, piece: int) -> Extreme:
     return Extreme(-value, piece, v)
 
 
+def is_regular(patch: RuledPatch) -> bool:
+    """Return whether neither end normal vanishes anywhere, ends included, as far as samples show."""
+
+    def strength(v: Values) -> Values:
+        f = frames(patch, v)
+        n0, n1 = end_normals(f)
+        scale = norm(f.p) * max(float(norm(f.c0_d1).max()), float(norm(f.c1_d1).max()))
+        return np.divide(np.minimum(norm(n0), norm(n1)), scale, out=np.zeros_like(scale), where=scale > 0)
+
+    least, _ = maximum(lambda v: -strength(v))
+    return -least > NO_NORMAL
+
+
+NO_NORMAL = 1e-9
+"""A normal |p x c'| below this share of |p| and the largest |c'| vanishes: a touching edge of regression shows as
+the square of the last sampling step, 1e-16."""
+
 INSIDE = 1e-3
 """Rulings within this share of an end count as the end's: both figures above may fade to zero there."""
 
@@ -85,13 +102,13 @@ def _inside(values: Values, v: Values) -> Values:
 
 
 def turning(patch: RuledPatch) -> float:
-    """Return how far the rulings turn in the flat over the patch, rad, with its sign (counter-clockwise positive)."""
+    """Return how far the rulings turn in the flat over the patch, rad, with its sign (counter-clockwise positive).
+
+    Raises NoSolutionError where the turning does not resolve: a patch that folds.
+    """
 
     def rate(v: Values) -> np.ndarray:
-        f = frames(patch, v)
-        length = norm(f.p)
-        turn = dot(f.p_d1, unit(across(f, 0.5)[1]))
-        rate = np.divide(turn, length, out=np.zeros_like(length), where=length > 0)
+        rate = turn_rate(frames(patch, v))
         return np.stack([rate, np.ones_like(rate)], axis=1)  # the second channel sets the scale: 1 rad
 
     return float(integral(rate, "turning of the rulings")[0])
