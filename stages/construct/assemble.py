@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial
 
+import numpy as np
+
 from stages.construct import minimax, theorems
 from stages.construct.curves import Chain, chain, ends, largest_gap, ruled_patches
 from stages.construct.plain import cone_patches, cylinder_patches, directrix_of, frustum
@@ -25,21 +27,18 @@ from stages.construct.quintic import (
 )
 from stages.construct.strip import joins_detail, strip_ends
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Values, Vector3, norm
+from stages.geometry.arrays import Values, Vector3, dot, norm
 from stages.geometry.curves import Curve
 from stages.geometry.extremum import maximum
 from stages.geometry.ruled import RuledPatch
-from stages.model.part import (
+from stages.model.part import Cone, Cylinder, Ruled, SurfaceSpec
+from stages.model.quintics import (
     SHAPE_KEYS,
-    Cone,
-    Cylinder,
     QuinticCone,
     QuinticCylinder,
     QuinticPlanar,
     QuinticRuled,
     QuinticStrip,
-    Ruled,
-    SurfaceSpec,
 )
 from stages.model.report import Finding, Metric
 from stages.model.scalars import floats
@@ -106,16 +105,28 @@ def _open(key: str, link: Chain, tol: Tolerances) -> tuple[Finding, ...]:
 def _apex_findings(curves: Sequence[Curve], apex: Vector) -> tuple[Finding, ...]:
     """Refuse an apex on the directrix, naming the place."""
     for i, curve in enumerate(curves):
-        least, v = maximum(partial(_nearness, curve, floats(apex)))
-        if -least <= ON_CURVE * float(norm(ends(curve)[0] - floats(apex))):
+        least, v = _nearest(curve, floats(apex))
+        if least <= ON_CURVE * float(norm(np.stack(ends(curve)) - floats(apex)).max()):
             return (Finding("apex-on-directrix", "the apex lies on the directrix", True, {"piece": i, "v": v}),)
     return ()
+
+
+def _nearest(curve: Curve, point: Vector3) -> tuple[float, float]:
+    """Return the least distance of a curve from a point, mm, and its place: sampled, then Gauss-Newton."""
+    _, v = maximum(partial(_nearness, curve, point))
+    for _ in range(NEWTON_STEPS):
+        position, slope = curve.jet(np.array([v]), 1)[:, 0]
+        speed = float(dot(slope, slope))
+        v = min(max(v - float(dot(position - point, slope)) / speed, 0.0), 1.0) if speed > 0.0 else v
+    return float(-_nearness(curve, point, np.array([v]))[0]), v
 
 
 def _nearness(curve: Curve, point: Vector3, v: Values) -> Values:
     return -norm(curve.jet(v, 0)[0] - point)
 
 
+NEWTON_STEPS = 3
+"""The sampled place is good to 1e-8; on the curve each step squares that."""
 ON_CURVE = 1e-9
 """An apex nearer to its directrix than this share of the cone's length lies on it: below, no ruling has a direction."""
 
@@ -218,6 +229,9 @@ def _strip(spec: QuinticStrip, tol: Tolerances) -> Built:
     relative = theorems.relative_c if isinstance(spec.first, QuinticCylinder) else theorems.relative_a
     detail = coefficients(patches) | joins_detail(pairs)
     kept = [metric for metric in first.measured if metric.name == "speed_max"]
+    findings += [finding for finding in first.findings if finding.code not in ("end-curvature", "apex-on-directrix")]
+    if isinstance(spec.first, QuinticCone):
+        findings += _apex_findings([directrix(*c0) for c0, _ in pairs], vector(spec.first.apex))
     return Built(
         patches,
         (*metrics, *kept),

@@ -12,13 +12,14 @@ from math import radians
 import numpy as np
 
 from stages.construct.curves import Chain, chain, plane_axes
-from stages.construct.quintic import Vector, combine, scaling, vector
+from stages.construct.quintic import ZERO, Vector, combine, scaling, vector
 from stages.geometry import contours
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector3, cross2, dot, norm, unit
-from stages.geometry.curves import Bezier, Circular, Curve, affine, exactly
+from stages.geometry.curves import Along, Bezier, Circular, Curve, affine, exactly
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from stages.geometry.ruled import RuledPatch
 from stages.model.part import Cone, Cylinder, Plane
+from stages.model.scalars import floats
 
 
 def cone_patches(spec: Cone, directrix: Chain) -> tuple[RuledPatch, ...]:
@@ -49,39 +50,40 @@ def frustum(spec: Cone) -> RuledPatch:
 def cylinder_patches(spec: Cylinder, directrix: Chain) -> tuple[RuledPatch, ...]:
     """Return the cylinder over every piece of the directrix, between its two ends."""
     d = vector(spec.direction)
-    start = _meeting(spec.start_plane, d) if spec.start_plane else (scaling(Fraction(0)), combine((0, d)))
+    start = _meeting(spec.start_plane, d) if spec.start_plane else (ZERO, Fraction(0))
     if spec.end_plane:
         end = _meeting(spec.end_plane, d)
     else:
         size = float(norm(np.array([float(x) for x in d])))
-        along = exactly([float(spec.length or 0) / size])[0]
-        end = (start[0], combine((1, start[1]), (along, d)))
-    identity = scaling(Fraction(1))
+        end = (start[0], start[1] + exactly([float(spec.length or 0) / size])[0])
+    length = combine((1, end[0]), (-1, start[0])), end[1] - start[1]
     return tuple(
-        RuledPatch(
-            affine(r, _plus(identity, start[0]), start[1]),
-            affine(r, _plus(identity, end[0]), end[1]),
-            affine(r, _plus(end[0], start[0], sign=-1), combine((1, end[1]), (-1, start[1]))),
-        )
+        RuledPatch(_slid(r, start, d), _slid(r, end, d), Along(_distance(r, length), floats(d)))
         for r in directrix.curves
     )
 
 
-Matrix3 = tuple[Vector, Vector, Vector]
+Reach = tuple[Vector, Fraction]
+"""A step along the direction as a function of the point r it starts from: row . r + constant."""
 
 
-def _meeting(plane: Plane, d: Vector) -> tuple[Matrix3, Vector]:
-    """Return the affine map from r to the step along d that reaches the plane: d ((P - r).n) / (d.n)."""
+def _meeting(plane: Plane, d: Vector) -> Reach:
+    """Return the step along d that reaches the plane: ((P - r).n) / (d.n)."""
     n, point = vector(plane.normal), vector(plane.point)
     across = sum((a * b for a, b in zip(d, n, strict=True)), Fraction(0))
     height = sum((a * b for a, b in zip(point, n, strict=True)), Fraction(0))
-    x, y, z = (combine((-component / across, n)) for component in d)
-    return (x, y, z), combine((height / across, d))
+    return combine((-1 / across, n)), height / across
 
 
-def _plus(a: Matrix3, b: Matrix3, *, sign: int = 1) -> Matrix3:
-    x, y, z = (combine((1, p), (sign, q)) for p, q in zip(a, b, strict=True))
-    return x, y, z
+def _slid(r: Curve, reach: Reach, d: Vector) -> Curve:
+    """Return r moved along d by its reach."""
+    rows = [combine((1, axis), (component, reach[0])) for axis, component in zip(scaling(Fraction(1)), d, strict=True)]
+    return affine(r, rows, combine((reach[1], d)))
+
+
+def _distance(r: Curve, reach: Reach) -> Curve:
+    """Return the reach along r as the first coordinate of a curve."""
+    return affine(r, (reach[0], ZERO, ZERO), (reach[1], Fraction(0), Fraction(0)))
 
 
 @dataclass(frozen=True, slots=True)

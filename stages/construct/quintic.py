@@ -19,7 +19,7 @@ from math import isqrt
 
 from stages.geometry.curves import Bezier, ExactPoint, affine, bezier
 from stages.geometry.ruled import RuledPatch, between
-from stages.model.part import NextPatch, QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled
+from stages.model.quintics import NextPatch, QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled
 
 Vector = tuple[Fraction, Fraction, Fraction]
 ZERO: Vector = (Fraction(0), Fraction(0), Fraction(0))

@@ -23,7 +23,7 @@ from stages.construct.quintic import (
     second_derivative,
     vector,
 )
-from stages.model.part import (
+from stages.model.quintics import (
     SHAPE_KEYS,
     NextPatch,
     QuinticCone,
