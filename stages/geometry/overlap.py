@@ -92,7 +92,9 @@ def _fraction(loose: ArcPath, piece: Indices, points: Points2) -> Values:
     arc = np.arcsin(np.clip(reach * np.abs(curvature) / 2.0, 0.0, 1.0))
     curved = np.abs(half) > NEARLY_STRAIGHT
     share: Array = np.where(
-        curved, arc / np.where(curved, np.abs(half), 1.0), reach / np.maximum(chord, np.finfo(float).tiny)
+        curved,
+        arc / np.where(curved, np.abs(half), 1.0),
+        np.divide(reach, chord, out=np.zeros_like(reach), where=chord > 0.0),
     )
     ahead = np.einsum("ij,ij->i", points - start, end - start) > 0.0
     fraction: Values = np.where(ahead, np.clip(share, 0.0, 1.0), 0.0)

@@ -1,0 +1,172 @@
+"""A file as read back against what should be in it.
+
+Against the drawing that was written: the same layers in the same order, each path with the same length and area.
+Against the exact development (files in `flat/`): two-sided distance, and the relative errors of length and area.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import dist
+
+import numpy as np
+
+from stages.errors import NoSolutionError
+from stages.geometry.arcpath import ArcPath, area, bounds, length, lengths
+from stages.geometry.arrays import norm
+from stages.geometry.biarc import LEAST_PIECE_MM
+from stages.geometry.hausdorff import hausdorff
+from stages.geometry.sampling import Resolved, length_and_area, resolved
+from stages.model.pattern import Contour, FlatPattern
+from stages.model.report import Finding, Metric
+from stages.write.drawing import Drawing, Item
+from stages.write.readback import Entity, ReadFile
+
+ROUND_TRIP = 1e-9
+"""Relative: what ten decimals of a mm leave of lengths and areas."""
+
+ROUND_TRIP_MM = 1e-8
+"""Absolute, for contours so small that ten decimals are more than that."""
+
+GRID_SHARE = 0.01
+"""How well the grid under an exact edge must know it, as a share of the contour's chord."""
+
+QUADRATURE = 1e-9
+CLOSURE_MM = 0.01
+"""The gap at which a controller takes a contour for open."""
+
+SHORTER = 1.0 - 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class ContourFigures:
+    """How one contour of a file compares with its exact edges; lengths in mm, errors relative."""
+
+    part: str
+    contour: int
+    deviation_mm: float
+    chord_mm: float
+    closure_mm: float
+    length_error: float
+    area_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One file against its drawing and the exact development; `shortest_mm`: no piece may be shorter."""
+
+    contours: tuple[ContourFigures, ...]
+    findings: tuple[Finding, ...]
+    shortest_mm: float
+
+
+def compared(back: ReadFile, drawing: Drawing, patterns: Mapping[str, FlatPattern]) -> Comparison:
+    """Return the comparison of one file; with exact edges for the parts in `patterns`."""
+    shortest = min(float(lengths(item.path).min()) for item in drawing.items if item.contour is not None)
+    paths = [entity for entity in back.entities if entity.kind != "TEXT"]
+    findings = tuple(
+        Finding("readback-content", f"{drawing.path}: {text}", fatal=True, where={"file": drawing.path})
+        for text in _differences(paths, drawing.items)
+    )
+    figures = () if findings else tuple(_figures(paths, drawing.items, patterns))
+    if shortest < LEAST_PIECE_MM:
+        text = f"{drawing.path}: an edge gives a piece of {shortest:.3g} mm; controllers want {LEAST_PIECE_MM} mm"
+        findings += (Finding("short-piece", text, where={"file": drawing.path}),)
+    return Comparison(figures, findings, min(shortest * SHORTER, LEAST_PIECE_MM))
+
+
+def metrics(comparisons: Sequence[Comparison], entities: int) -> tuple[Metric, ...]:
+    """Return the metrics of the stage, the worst contour of all files; None where no contour could be compared."""
+    contours = [contour for comparison in comparisons for contour in comparison.contours]
+    if not contours:
+        names = ("max_deviation_mm", "closure_gap_mm", "area_error", "length_error")
+        return (*(Metric(name, None) for name in names), Metric("entities", float(entities), evidence="proved"))
+    furthest = max(contours, key=lambda contour: contour.deviation_mm / contour.chord_mm)
+    gap = max(contours, key=lambda contour: contour.closure_mm)
+    by_area = max(contours, key=lambda contour: contour.area_error)
+    by_length = max(contours, key=lambda contour: contour.length_error)
+    return (
+        Metric("max_deviation_mm", furthest.deviation_mm, "mm", limit=furthest.chord_mm, where=_where(furthest)),
+        Metric("closure_gap_mm", gap.closure_mm, "mm", "proved", CLOSURE_MM, _where(gap)),
+        Metric("area_error", by_area.area_error, where=_where(by_area)),
+        Metric("length_error", by_length.length_error, where=_where(by_length)),
+        Metric("entities", float(entities), evidence="proved"),
+    )
+
+
+def cut_figures(back: ReadFile) -> dict[str, float]:
+    """Return the cut length in mm and the number of pierces of one file."""
+    cut = [entity.path for entity in back.entities if entity.layer.startswith("CUT_") and entity.path is not None]
+    return {"cut_length_mm": float(sum(length(path) for path in cut)), "pierces": float(len(cut))}
+
+
+def _where(contour: ContourFigures) -> dict[str, float | int | str]:
+    """Return the place of a figure."""
+    return {"part": contour.part, "contour": contour.contour}
+
+
+def _differences(paths: Sequence[Entity], items: Sequence[Item]) -> Iterator[str]:
+    """Yield where the file does not hold what was drawn."""
+    layers, wanted = [entity.layer for entity in paths], [item.layer for item in items]
+    if layers != wanted:
+        yield f"holds {len(layers)} paths on other layers or in another order than the {len(wanted)} drawn"
+        return
+    for entity, item in zip(paths, items, strict=True):
+        if entity.path is None or entity.path.closed != item.path.closed:
+            yield f"{entity.kind} on {entity.layer} is not the path that was drawn"
+            continue
+        yield from _sizes(entity, entity.path, item.path)
+
+
+def _sizes(entity: Entity, found: ArcPath, drawn: ArcPath) -> Iterator[str]:
+    """Yield a place, a length or an area that did not survive; a circle's direction does not."""
+    moved = float(np.abs(np.subtract(bounds(found), bounds(drawn))).max())
+    if moved > ROUND_TRIP_MM:
+        yield f"{entity.kind} on {entity.layer} lies {moved:.3g} mm from where it was drawn"
+    long = length(drawn)
+    if abs(length(found) - long) > ROUND_TRIP * long + ROUND_TRIP_MM:
+        yield f"{entity.kind} on {entity.layer} has the length {length(found):.9g} mm, drawn were {long:.9g} mm"
+    if not drawn.closed:
+        return
+    wide = abs(area(drawn)) if entity.kind == "CIRCLE" else area(drawn)
+    if abs(area(found) - wide) > ROUND_TRIP * abs(wide) + ROUND_TRIP_MM * long:
+        yield f"{entity.kind} on {entity.layer} has the area {area(found):.9g} mm2, drawn were {wide:.9g} mm2"
+
+
+def _figures(
+    paths: Sequence[Entity], items: Sequence[Item], patterns: Mapping[str, FlatPattern]
+) -> Iterator[ContourFigures]:
+    """Yield the figures of the contours whose exact edges are known."""
+    for entity, item in zip(paths, items, strict=True):
+        pattern = patterns.get(item.part)
+        if pattern is None or item.contour is None or entity.path is None:
+            continue
+        contour = (pattern.outer, *pattern.inner)[item.contour]
+        try:
+            yield _contour_figures(entity.path, contour, item.part, item.contour)
+        except NoSolutionError as error:
+            error.add_note(f"part {item.part!r}, stage write")
+            raise
+
+
+def _contour_figures(path: ArcPath, contour: Contour, part: str, number: int) -> ContourFigures:
+    """Return how one contour as read compares with its exact edges."""
+    edges = [resolved(edge, accuracy=GRID_SHARE * contour.chord_mm) for edge in contour.edges]
+    deviation = hausdorff(edges, path, accuracy=contour.chord_mm)
+    exact_length, exact_area = length_and_area(edges, accuracy=QUADRATURE)
+    return ContourFigures(
+        part,
+        number,
+        deviation.bound_mm,
+        contour.chord_mm,
+        _closure(path, edges),
+        abs(length(path) - exact_length) / exact_length,
+        abs(abs(area(path)) - abs(exact_area)) / abs(exact_area),
+    )
+
+
+def _closure(path: ArcPath, edges: Sequence[Resolved]) -> float:
+    """Return the largest gap, in mm: between the exact edges, and in the path if it does not close."""
+    starts = np.array([edge.points[0] for edge in edges])
+    ends = np.array([edge.points[-1] for edge in edges])
+    gap = float(norm(starts - np.roll(ends, 1, axis=0)).max())
+    return gap if path.closed else max(gap, dist(path.vertices[0], path.vertices[-1]))

@@ -1,0 +1,193 @@
+"""What can be wrong with a cut file, each fault found from the file alone: one function per fault.
+
+Limits follow the measures W6 to W10 of a cut file: one closed entity per contour, no vertex twice, no arc over a half
+circle, no cut made twice, marks before holes before the outline around them, only simple entities, true units and
+extents.  A check that depends on an earlier one (an order that is judged by contours that are not closed) stays silent
+where that one has spoken.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from shapely import Polygon, prepare
+
+from stages.geometry.arcpath import ArcPath, area, lengths, polygon
+from stages.geometry.arrays import Array, norm
+from stages.geometry.overlap import overlaps
+from stages.model.report import Finding
+from stages.write.drawing import extent
+from stages.write.dxf import UNIT_VARIABLES
+from stages.write.readback import Entity, ReadFile
+
+KINDS = frozenset({"LWPOLYLINE", "POLYLINE", "VERTEX", "SEQEND", "LINE", "ARC", "CIRCLE", "TEXT", "POINT"})
+CUT_LAYERS = ("CUT_INNER", "CUT_OUTER")
+CLOSED_LAYERS = (*CUT_LAYERS, "SHEET")
+RANK = {"MARK": 0, "CUT_INNER": 1, "CUT_OUTER": 2}
+
+EXTENT_MM = 0.01
+OVERLAP_MM = 0.01
+APART_MM = 1e-3
+"""Two cuts closer than this are one cut: a hundredth of the narrowest kerf."""
+
+SAME_VERTEX_MM = 1e-6
+MOST_BULGE = 1.0 + 1e-9
+INSIDE_MM = 0.05
+"""How far a mark or hole may reach beyond its outline and still belong to it: marks may end on the contour."""
+
+WHOLE = 0.999
+"""Share of a contour that is cut twice from which on it is a copy, not a side shared with a neighbour."""
+
+
+def faults(file: ReadFile, path: str, shortest_mm: float) -> list[Finding]:
+    """Return the faults of one file; `shortest_mm` is the length below which a piece is too short."""
+    found: list[Finding] = [_fatal("readback-complaint", path, text) for text in file.complaints]
+    if not file.entities:
+        return found or [_fatal("readback-empty", path, "no entity")]
+    for check in (_units, _extents, _colours, _kinds, _open_contours, _vertices, _bulges, _directions):
+        found += [_fatal(code, path, text) for code, text in check(file)]
+    found += [_fatal("readback-short-piece", path, text) for text in _short_pieces(file, shortest_mm)]
+    if not found:
+        found += [_fatal("readback-order", path, text) for text in _order(file.entities)]
+    return found + list(_overlaps(file.entities, path))
+
+
+def _fatal(code: str, path: str, message: str) -> Finding:
+    """Return a finding that stops the job."""
+    return Finding(code, f"{path}: {message}", fatal=True, where={"file": path})
+
+
+def _units(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield header variables that do not say millimetres."""
+    for name, wanted in UNIT_VARIABLES.items():
+        if file.header.get(name) != wanted:
+            yield "readback-units", f"{name} is {file.header.get(name)}, must be {wanted:g} for millimetres"
+
+
+def _extents(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield extents in the header that are not the bounding box."""
+    paths = [entity.path for entity in file.entities if entity.path is not None]
+    if not paths:
+        return
+    box = extent(paths)
+    for name, wanted in (("$EXTMIN", box[:2]), ("$EXTMAX", box[2:])):
+        written: Array = np.array(file.header.get(name, (np.inf, np.inf, 0.0)), dtype=np.float64)[:2]
+        if not np.abs(written - np.array(wanted)).max() <= EXTENT_MM:
+            yield "readback-extents", f"{name} is {tuple(written.tolist())}, the drawing reaches {wanted}"
+
+
+def _colours(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield layers that are not declared and entities whose own colour is not their layer's."""
+    for entity in file.entities:
+        if entity.layer not in file.layers or entity.layer == "0":
+            yield "readback-layer", f"{entity.kind} on the layer {entity.layer!r}, which means nothing here"
+        elif entity.colour != file.layers[entity.layer]:
+            yield "readback-colour", f"{entity.kind} on {entity.layer} has the colour {entity.colour}"
+
+
+def _kinds(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield entities that cutting software does not take."""
+    for entity in file.entities:
+        text_cut = entity.kind == "TEXT" and entity.layer in CUT_LAYERS
+        if entity.kind not in KINDS or text_cut:
+            yield "readback-entity", f"{entity.kind} on {entity.layer}"
+
+
+def _open_contours(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield what lies on a cut or sheet layer and does not close."""
+    for entity in file.entities:
+        if entity.layer in CLOSED_LAYERS and not entity.closed:
+            yield "readback-open-contour", f"{entity.kind} on {entity.layer} is not closed"
+
+
+def _vertices(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield vertices that follow themselves, the last one and the first included."""
+    for entity in file.entities:
+        if entity.path is None:
+            continue
+        step = norm(np.diff(entity.path.vertices, axis=0, append=entity.path.vertices[:1]))
+        count = int(np.count_nonzero(step <= SAME_VERTEX_MM))
+        if count and entity.closed:
+            yield "readback-repeated-vertex", f"{entity.kind} on {entity.layer} repeats {count} of its vertices"
+
+
+def _short_pieces(file: ReadFile, shortest_mm: float) -> Iterator[str]:
+    """Yield cut pieces that are too short for a controller."""
+    for entity in _cut(file.entities):
+        least = float(lengths(entity.path).min()) if entity.path is not None else np.inf
+        if SAME_VERTEX_MM < least < shortest_mm:
+            yield f"{entity.kind} on {entity.layer} has a piece of {least:.3g} mm, under {shortest_mm:.3g} mm"
+
+
+def _bulges(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield arcs of more than a half circle."""
+    for entity in file.entities:
+        if entity.path is not None and np.abs(entity.path.bulges).max() > MOST_BULGE:
+            yield "readback-bulge", f"{entity.kind} on {entity.layer} has an arc of more than 180 degrees"
+
+
+def _directions(file: ReadFile) -> Iterator[tuple[str, str]]:
+    """Yield outer contours that run clockwise and inner ones that run counter-clockwise; circles have no direction."""
+    for entity in _cut(file.entities):
+        if entity.path is None or not entity.closed or entity.kind == "CIRCLE":
+            continue
+        if (area(entity.path) > 0.0) != (entity.layer == "CUT_OUTER"):
+            yield "readback-direction", f"{entity.kind} on {entity.layer} runs the wrong way round"
+
+
+def _order(entities: Sequence[Entity]) -> Iterator[str]:
+    """Yield what is not followed by its own outline: of each part marks, then holes, then the outline around them."""
+    group: list[Entity] = []
+    for entity in entities:
+        if entity.layer in RANK:
+            group.append(entity)
+        if entity.layer == "CUT_OUTER":
+            yield from _group_order(group)
+            group = []
+    if group:
+        yield f"{len(group)} marks or holes come after the last outline"
+
+
+def _group_order(group: Sequence[Entity]) -> Iterator[str]:
+    """Yield what is out of order among the paths that end with one outline."""
+    ranks = [RANK[entity.layer] for entity in group]
+    if ranks != sorted(ranks):
+        yield "marks must come before holes"
+    outline = _region(group[-1].path, INSIDE_MM)
+    if outline is None:
+        return
+    prepare(outline)
+    for entity in group[:-1]:
+        if entity.path is not None and not outline.contains(Polygon(_ring(entity.path))):
+            yield f"{entity.kind} on {entity.layer} comes before an outline that does not hold it"
+
+
+def _region(path: ArcPath | None, margin: float) -> Polygon | None:
+    """Return the region inside a path, grown by `margin` mm."""
+    return None if path is None else Polygon(polygon(path, accuracy=margin / 4.0)).buffer(margin)
+
+
+def _ring(path: ArcPath) -> Array:
+    """Return a ring of points that stands for the path; an open one runs there and back."""
+    points = polygon(path, accuracy=INSIDE_MM / 4.0)
+    return points if path.closed and points.shape[0] > 2 else np.concatenate([points, points[::-1]])  # noqa: PLR2004
+
+
+def _cut(entities: Sequence[Entity]) -> list[Entity]:
+    """Return what will be cut."""
+    return [entity for entity in entities if entity.layer in CUT_LAYERS]
+
+
+def _overlaps(entities: Sequence[Entity], path: str) -> Iterator[Finding]:
+    """Yield cuts that would be made twice; sides that two parts share are said, but stop nothing."""
+    ends = np.cumsum([entity.layer == "CUT_OUTER" for entity in entities])
+    parts = [int(ends[i]) - (entities[i].layer == "CUT_OUTER") for i in range(len(entities))]
+    known = [(entity.path, parts[i]) for i, entity in enumerate(entities) if entity.layer in CUT_LAYERS]
+    paths = [(cut, part) for cut, part in known if cut is not None]
+    for overlap in overlaps([cut for cut, _ in paths], apart=APART_MM, least=OVERLAP_MM) if paths else []:
+        (first, part), (second, other) = paths[overlap.first], paths[overlap.second]
+        whole = min(float(lengths(first).sum()), float(lengths(second).sum()))
+        text = f"{path}: {overlap.length_mm:.3f} mm would be cut twice"
+        if part != other and overlap.length_mm < WHOLE * whole:
+            yield Finding("readback-common-cut", f"{text} (parts touch; ask for a gap)", where={"file": path})
+        else:
+            yield Finding("readback-duplicate", text, fatal=True, where={"file": path})
