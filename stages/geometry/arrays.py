@@ -71,20 +71,17 @@ def locked(values: Array) -> Array:
 
 def cross2(a: Array, b: Array) -> Array:
     """Return the z component of the cross product of plane vectors, along the last axis."""
-    product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return product
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def dot(a: Array, b: Array) -> Array:
     """Return the dot product along the last axis."""
-    product: Array = np.einsum("...i,...i->...", a, b)
-    return product
+    return np.asarray(np.einsum("...i,...i->...", a, b))
 
 
 def norm(a: Array) -> Array:
     """Return the Euclidean length along the last axis."""
-    length: Array = np.sqrt(np.einsum("...i,...i->...", a, a))
-    return length
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", a, a)))
 
 
 def unit(a: Array) -> Array:

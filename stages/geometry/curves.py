@@ -3,7 +3,7 @@
 Three sorts are enough: Bezier (polynomial), rational Bezier, and circular motion (centre + cos U + sin V + angle W:
 arcs, circles, ellipses and helices).  Cones and cylinders over them are affine images of the same sort, so nothing is
 approximated.  A Bezier curve carries its control points exactly as well, for proofs; floats are those, rounded once.
-`Difference` is what is left when two curves of unlike sorts are subtracted.
+`Difference` is what is left when two curves of unlike sorts are subtracted; `Along` are parallel rulings.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import comb
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -21,6 +21,7 @@ ExactPoint = tuple[Fraction, Fraction, Fraction]
 ExactPoints = tuple[ExactPoint, ...]
 
 
+@runtime_checkable
 class Curve(Protocol):
     """A curve that is smooth on [0, 1]."""
 
@@ -59,12 +60,18 @@ class RationalBezier(ArrayValue):
             raise ValueError("weights must be positive")
 
     def jet(self, v: Values, order: int) -> Array:
-        """Return position and derivatives up to `order`, shape (order + 1, n, 3), by the quotient rule."""
+        """Return position and derivatives up to `order`, shape (order + 1, n, 3), by the quotient rule.
+
+        Taken from the first point on: far from the origin the quotient rule would lose the derivatives' digits.
+        """
+        origin = self.weighted[0] / self.weights[0]
+        near = self.weighted - np.outer(self.weights, origin)
         jets: list[Array] = []
         weight = [bernstein_sum(differences(self.weights[:, None], k), v) for k in range(order + 1)]
         for k in range(order + 1):
             rest = sum((comb(k, i) * weight[i] * jets[k - i] for i in range(1, k + 1)), np.zeros((v.size, 3)))
-            jets.append((bernstein_sum(differences(self.weighted, k), v) - rest) / weight[0])
+            jets.append((bernstein_sum(differences(near, k), v) - rest) / weight[0])
+        jets[0] = jets[0] + origin
         return np.stack(jets)
 
 
@@ -101,6 +108,19 @@ class Difference(ArrayValue):
         """Return position and derivatives up to `order`, shape (order + 1, n, 3)."""
         difference: Array = self.a.jet(v, order) - self.b.jet(v, order)
         return difference
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Along(ArrayValue):
+    """A direction times a distance, the first coordinate of a curve: keeps its direction however short it gets."""
+
+    distance: Curve
+    direction: Vector3
+
+    def jet(self, v: Values, order: int) -> Array:
+        """Return position and derivatives up to `order`, shape (order + 1, n, 3)."""
+        scaled: Array = self.distance.jet(v, order)[..., :1] * self.direction
+        return scaled
 
 
 def bezier(exact: Sequence[Sequence[Fraction]]) -> Bezier:

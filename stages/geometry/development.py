@@ -20,8 +20,8 @@ from numpy.polynomial import legendre
 
 from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, dot, norm, unit
-from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER
-from stages.geometry.ruled import RuledPatch, across, frames
+from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
+from stages.geometry.ruled import RuledPatch, across, frames, turn_rate
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +40,10 @@ class FlatPiece(ArrayValue):
 
 @dataclass(frozen=True, slots=True)
 class Development:
-    """The pieces of a strip, flat, in one frame: c0(0) at the origin and the first ruling along +x."""
+    """The pieces of a strip, flat, in one frame.
+
+    c0(0) is at the origin and the first ruling along +x; the last one if the first has no length.
+    """
 
     pieces: tuple[FlatPiece, ...]
 
@@ -53,12 +56,21 @@ def develop(patches: tuple[RuledPatch, ...]) -> Development:
         piece = _flat_piece(patch, phi, q, f"unrolling piece {number}")
         pieces.append(piece)
         phi, q = float(piece.phi[-1].sum()), piece.q[-1].sum(axis=0)
-    return Development(tuple(pieces))
+    first, last = (norm(patch.p.jet(np.array([v]), 0)[0])[0] for patch, v in ((patches[0], 0.0), (patches[-1], 1.0)))
+    return Development(tuple(pieces if first > 0.0 or last == 0.0 else (_turned(piece, -phi) for piece in pieces)))
+
+
+def _turned(piece: FlatPiece, angle: float) -> FlatPiece:
+    """Return the piece turned about the origin by an angle in rad."""
+    phi = piece.phi.copy()
+    phi[:, 0] += angle
+    c, s = np.cos(angle), np.sin(angle)
+    return FlatPiece(piece.patch, piece.breaks, phi, piece.q @ np.array([[c, s], [-s, c]]))
 
 
 def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> FlatPiece:
     """Return one piece that starts with the angle phi0 at q0."""
-    breaks, rates = quadrature.panels(lambda v: _rates(patch, v), subject)
+    breaks, rates = _gently_turning(patch, *quadrature.panels(lambda v: _rates(patch, v), subject))
     half = np.diff(breaks)[:, None] / 2.0
     # the turning is scaled to a length (see _rates): back to rad here
     turn = half * quadrature.coefficients(rates[..., 0] / _scale(patch)) @ ANTIDERIVATIVE.T
@@ -67,6 +79,23 @@ def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> Flat
     velocity = rates[..., 1:2] * e + rates[..., 2:3] * e_perp
     steps = half[..., None] * np.einsum("lk,pkc->plc", ANTIDERIVATIVE, quadrature.coefficients(velocity))
     return FlatPiece(patch, breaks, phi, _chained(steps, q0))
+
+
+def _gently_turning(patch: RuledPatch, breaks: Array, rates: Array) -> tuple[Array, Array]:
+    """Return the panels, those divided on which the ruling turns far: E and E_perp must be resolved too."""
+    turned = np.diff(breaks) / 2.0 * (np.abs(rates[..., 0]) @ WEIGHTS) / _scale(patch)
+    counts = np.maximum(np.ceil(turned / MOST_TURN), 1.0).astype(int)
+    if counts.max() == 1:
+        return breaks, rates
+    parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(breaks[:-1], breaks[1:], counts, strict=True)]
+    breaks = np.append(np.concatenate(parts), 1.0)
+    v = quadrature.nodes(breaks[:-1], breaks[1:])
+    return breaks, _rates(patch, v.ravel()).reshape(*v.shape, -1)
+
+
+MOST_TURN = 1.0
+"""Over a turn of 1 rad the Legendre coefficients of cos and sin fall below rounding by the 11th of 16; rates that are
+themselves resolved leave their product so.  Over 2 pi they are at 1e-8."""
 
 
 def _chained(local: Array, start: Array) -> Array:
@@ -93,9 +122,8 @@ def _rates(patch: RuledPatch, v: Values) -> Array:
     length = norm(f.p)
     e = unit(f.p)
     w = unit(across(f, 0.5)[1])
-    turn = np.divide(dot(f.p_d1, w), length, out=np.zeros_like(length), where=length > 0)
     speeds = norm(f.c0_d1), norm(f.c1_d1)
-    return np.stack([turn * _scale(patch), dot(f.c0_d1, e), dot(f.c0_d1, w), length, *speeds], axis=1)
+    return np.stack([turn_rate(f) * _scale(patch), dot(f.c0_d1, e), dot(f.c0_d1, w), length, *speeds], axis=1)
 
 
 def _scale(patch: RuledPatch) -> float:
@@ -120,12 +148,23 @@ def positions(piece: FlatPiece, u: Values, v: Values) -> Points2:
 
 
 def velocities(piece: FlatPiece, u: Values, v: Values) -> Points2:
-    """Return d/dv of the flat positions, mm, from the rates: for directions, never for measuring distortion."""
+    """Return d/dv of the flat positions, mm, from the rates: for directions, never for measuring distortion.
+
+    Where a ruling has no length, and so no direction, they are those of the ruling beside it.
+    """
+    gone = norm(piece.patch.p.jet(v, 0)[0]) <= NO_LENGTH * _scale(piece.patch)
+    v = np.where(gone, np.clip(v, BESIDE, 1.0 - BESIDE), v)
     e, e_perp = _axes(angle(piece, v))
     f = frames(piece.patch, v)
     w = unit(across(f, 0.5)[1])
     s_v = f.c0_d1 + u[:, None] * f.p_d1
     return dot(s_v, unit(f.p))[:, None] * e + dot(s_v, w)[:, None] * e_perp
+
+
+NO_LENGTH = 1e-15
+"""A ruling below this share of the patch's scale has the direction of rounding."""
+BESIDE = 2.0**-20
+"""How far inside the ruling beside it is: turned by some 1e-6 rad, long enough for a direction to 1e-9."""
 
 
 def _locate(piece: FlatPiece, v: Values) -> tuple[Indices, Values]:

@@ -21,6 +21,8 @@ ROUNDING = 8 * 4e-15
 """A Legendre coefficient below this share of the scale is noise: 16 products of doubles, summed with both signs."""
 DEPTH = 40
 """A panel is halved at most so often: 2**-40 of the whole, where any integrable singularity has lost its weight."""
+MOST_PANELS = 4096
+"""So many panels at once are noise, not a function: an end singularity takes 2 per halving, a hard patch some 100."""
 
 NODES, WEIGHTS = legendre.leggauss(ORDER)
 
@@ -98,7 +100,10 @@ def panels(sample: Callable[[Values], Array], subject: str) -> tuple[Values, Arr
         if not pending:
             done.sort(key=lambda panel: panel[0])
             return np.array([panel[0] for panel in done] + [1.0]), np.stack([panel[2] for panel in done])
-    raise NoSolutionError(subject, reached=float(tail.max() / scale), wanted=ROUNDING, unit="of the scale")
+        if len(pending) > MOST_PANELS:
+            break
+    reached = float(tail.max() / scale) if scale > 0.0 else np.inf
+    raise NoSolutionError(subject, reached=reached, wanted=ROUNDING, unit="of the scale")
 
 
 SMALL_PANEL = 2.0**12

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Points3, Values, dot, norm, unit
+from stages.geometry.arrays import EPS, Array, ArrayValue, Points3, Values, dot, norm, unit
 from stages.geometry.curves import Bezier, Curve, difference, restrict
 
 
@@ -122,22 +122,52 @@ def across(f: Frames, u: float | Values) -> tuple[Points3, Points3]:
     return s_v, s_v - dot(s_v, e)[:, None] * e
 
 
+def turn_rate(f: Frames) -> Values:
+    """Return e'.w: how fast the rulings turn in the tangent plane (and so in the flat), rad per unit of v.
+
+    e = p / |p|, w the unit vector across the ruling at its middle.  A turn that is rounding of p' counts as none:
+    divided by a ruling that shrinks to nothing it would grow without bound.
+    """
+    length, turn = norm(f.p), dot(f.p_d1, unit(across(f, 0.5)[1]))
+    turns = (length > 0.0) & (np.abs(turn) > PARALLEL * norm(f.p_d1))
+    return np.divide(turn, length, out=np.zeros_like(length), where=turns)
+
+
+PARALLEL = 8 * EPS
+"""p'.w below this share of |p'|: three products, and the roundings of two unit vectors."""
+
+
 def curvature(patch: RuledPatch, v: Values, u: float) -> Values:
     """Return the signed curvature across the rulings at u, 1/mm: S_vv . N over |the part of S_v across the ruling|^2.
 
-    Positive towards N = p x S_v.  Infinite at an apex, NaN where the tangent plane is not defined.
+    Positive towards N = p x S_v.  At an apex it is infinite, or 0 where the normal does not turn; NaN where no tangent
+    plane is defined.
     """
     f = frames(patch, v)
+    here = bending(f, u)
+    other = bending(f, 1.0 if u < MIDDLE else 0.0)
+    _, perpendicular = across(f, u)
+    length = norm(perpendicular)
+    apex = length <= VANISHED * (norm(f.c0_d1) + norm(f.p_d1))
+    at_apex = np.where(np.isnan(other), np.nan, np.where(np.abs(other) > TURNS, np.copysign(np.inf, other), 0.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        result: Values = np.where(apex, at_apex, here / length)
+    return result
+
+
+MIDDLE = 0.5
+TURNS = 1e-12
+"""A normal that turns by less, rad per unit of v, does not turn: rounding of unit vectors, a thousand times over."""
+
+
+def bending(f: Frames, u: float) -> Values:
+    """Return how fast the normal turns about the ruling, rad per unit of v: on a developable the same for every u."""
     s_v, perpendicular = across(f, u)
     normal = unit(np.cross(f.p, s_v))
-    # the normal of a developable is that of the whole ruling: take it where it is longest
-    n0, n1 = end_normals(f)
-    longer = np.where((norm(n0) > norm(n1))[:, None], n0, n1)
-    normal = np.where((norm(normal) > 0)[:, None], normal, unit(longer))
     bend = dot(f.c0_d2 + u * f.p_d2 - 2.0 * _along(f, s_v)[:, None] * f.p_d1, normal)
     with np.errstate(divide="ignore", invalid="ignore"):
-        result: Values = bend / dot(perpendicular, perpendicular)
-    return result
+        rate: Values = bend / norm(perpendicular)
+    return rate
 
 
 def _along(f: Frames, s_v: Points3) -> Values:

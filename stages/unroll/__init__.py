@@ -68,8 +68,9 @@ def _strip(surface: RuledSurface, reached: Class, tol: Tolerances) -> Outcome[Fl
     corners = outline.corners(development)
     metrics, sides = _metrics(surface, development, nodes, corners, tol)
     overlap = outline.overlap(outer.path, tol.chord_mm)
-    findings = (*_strain_findings(metrics, reached, tol), *_overlap_findings(overlap))
-    metrics = (*metrics, Metric("overlap_mm2", overlap, "mm2", "sampled", tol.chord_mm**2))
+    covered = Metric("overlap_mm2", overlap, "mm2", "sampled", tol.chord_mm**2)
+    findings = (*_strain_findings(metrics, reached, tol), *_overlap_findings(covered))
+    metrics = (*metrics, covered)
     marks = tuple(mark for spec in surface.part.spec.mark for mark in ruling_marks(development, spec))
     report = StageReport("unroll", name, metrics, findings, _detail(corners, outer, sides))
     if not report.passed:
@@ -131,10 +132,10 @@ def _strain_findings(metrics: tuple[Metric, ...], reached: Class, tol: Tolerance
     return (Finding("strain", message, True, strain.where),)
 
 
-def _overlap_findings(overlap: float) -> tuple[Finding, ...]:
-    if overlap == 0.0:
+def _overlap_findings(covered: Metric) -> tuple[Finding, ...]:
+    if covered.passed:
         return ()
-    message = f"the flat pattern covers {overlap:.4g} mm2 twice: divide the part into two that each turn less"
+    message = f"the flat pattern covers {covered.value:.4g} mm2 twice: divide the part into two that each turn less"
     return (Finding("flat-overlap", message, fatal=False),)
 
 

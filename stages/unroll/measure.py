@@ -86,7 +86,7 @@ def flat_area(nodes: list[PieceNodes], corners: Points2) -> float:
     return float(0.5 * (curves + rulings))
 
 
-def _swept(piece: PieceNodes, side: int, middle: Points2) -> float:
+def _swept(piece: PieceNodes, side: int, middle: Vector2) -> float:
     """Return the integral of x dy - y dx along one edge."""
     swept = cross2(piece.flat[:, :, side] - middle, piece.flat_v[:, :, side])
     return float(np.einsum("p,j,pj->", piece.widths / 2.0, WEIGHTS, swept))
@@ -142,7 +142,7 @@ def metric_error(development: Development, nodes: list[PieceNodes]) -> Extreme:
                 np.abs(dot(at.flat_v, at.flat_v) - dot(s_v, s_v)) / G,
             ]
         ).max(axis=0)
-        found += [_extreme(errors, at.v, index), _panel_gap(piece, index)]
+        found += [_extreme(errors, at.v, index), _panel_gap(piece, at, index)]
     return max(found, key=lambda extreme: extreme.value)
 
 
@@ -152,22 +152,21 @@ def _extreme(errors: Array, v: Array, index: int) -> Extreme:
     return Extreme(float(errors[panel, node, side]), index + float(v[panel, node]), ACROSS[side])
 
 
-def _panel_gap(piece: FlatPiece, index: int) -> Extreme:
-    """Return the largest distance between the end of a panel and the beginning of the next, relative to the widths.
+def _panel_gap(piece: FlatPiece, at: PieceNodes, index: int) -> Extreme:
+    """Return the largest distance between the end of a panel and the beginning of the next, relative to their lengths.
 
-    Taken from the positions just on both sides of the break, less what the surface itself moves between them.
+    Taken from the positions just on both sides of the break; the longer edge of the shorter panel counts.
     """
     inner = piece.breaks[1:-1]
     if not inner.size:
         return Extreme(0.0, float(index), 0.0)
     worst = Extreme(0.0, float(index), 0.0)
-    width = np.minimum(np.diff(piece.breaks)[:-1], np.diff(piece.breaks)[1:])
+    reach = at.widths * norm(at.flat_v).max(axis=(1, 2))
+    shorter = np.maximum(np.minimum(reach[:-1], reach[1:]), np.finfo(float).tiny)
     below = np.nextafter(inner, 0.0)
     for u in (0.0, 1.0):
-        at = np.full(inner.size, u)
-        gap = norm(positions(piece, at, inner) - positions(piece, at, below))
-        speed = np.maximum(norm(piece.patch.c0.jet(inner, 1)[1]), norm(piece.patch.c1.jet(inner, 1)[1]))
-        relative = gap / np.maximum(speed * width, np.finfo(float).tiny)
+        side = np.full(inner.size, u)
+        relative = norm(positions(piece, side, inner) - positions(piece, side, below)) / shorter
         k = int(np.argmax(relative))
         if relative[k] > worst.value:
             worst = Extreme(float(relative[k]), index + float(inner[k]), u)
@@ -206,9 +205,11 @@ strain: near an apex or where the ruling runs along the directrix."""
 def corner_angles(development: Development, nodes: list[PieceNodes]) -> float:
     """Return the largest difference of a corner angle between pattern and surface, rad.
 
-    A corner where the edge has no direction (an apex) has no angle and is passed over.
+    A corner where the edge or the ruling has no direction (an apex, a ruling of no length) has no angle and is passed
+    over.
     """
     differences = []
+    least = NO_DIRECTION * max(float(norm(piece.flat[:, :, -1] - piece.flat[:, :, 0]).max()) for piece in nodes)
     for place, panel, x in ((0, 0, -1.0), (-1, -1, 1.0)):
         piece, at = development.pieces[place], nodes[place]
         f = frames(piece.patch, np.array([0.0 if place == 0 else 1.0]))
@@ -217,7 +218,7 @@ def corner_angles(development: Development, nodes: list[PieceNodes]) -> float:
             flat_v: Vector2 = np.asarray(legendre.legval(x, series))
             ends = positions(piece, np.array([0.0, 1.0]), np.full(2, 0.0 if place == 0 else 1.0))
             flat_u = ends[1] - ends[0]
-            if norm(tangent) > NO_DIRECTION * norm(f.c0_d1[0] + f.c1_d1[0]) and norm(f.p[0]) > 0:
+            if norm(tangent) > NO_DIRECTION * norm(f.c0_d1[0] + f.c1_d1[0]) and norm(f.p[0]) > least:
                 on_surface = np.arctan2(norm(np.cross(f.p[0], tangent)), dot(f.p[0], tangent))
                 in_flat = np.arctan2(abs(cross2(flat_u, flat_v)), dot(flat_u, flat_v))
                 differences.append(abs(float(on_surface - in_flat)))

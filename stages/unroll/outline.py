@@ -5,7 +5,7 @@ import shapely
 
 from stages.geometry import arcpath, biarc
 from stages.geometry.arcpath import ArcPath
-from stages.geometry.arrays import Array, Points2, Vector2, norm
+from stages.geometry.arrays import Array, Points2, Vector2, cross2, dot, norm
 from stages.geometry.development import DevelopedEdge, Development, positions
 from stages.geometry.plane import PlaneCurve, Segment
 from stages.model.pattern import Contour
@@ -43,15 +43,29 @@ def contour(exact: tuple[PlaneCurve, ...], chord_mm: float, name: str = "") -> C
 
 
 def overlap(path: ArcPath, chord_mm: float) -> float:
-    """Return the area that the outline covers twice, mm2; 0 for a simple outline.
+    """Return the area that the outline covers more than once or inside out, mm2; 0 for a simple outline.
 
-    The signed area counts a doubly covered region twice; by the even-odd rule it does not count at all.
+    The outline is cut where it meets itself; each face counts by how often the outline winds around it.
     """
-    ring = shapely.Polygon(arcpath.polygon(path, accuracy=chord_mm))
-    if ring.is_valid:
+    corners = arcpath.polygon(path, accuracy=chord_mm)
+    if shapely.Polygon(corners).is_valid:
         return 0.0
-    even_odd = float(shapely.make_valid(ring).area)
-    return max((abs(arcpath.area(path)) - even_odd) / 2.0, float(np.finfo(float).tiny))
+    sense = 1.0 if arcpath.area(path) >= 0.0 else -1.0
+    faces = shapely.polygonize([shapely.node(shapely.LinearRing(corners))]).geoms
+    return sum((face.area * _excess(sense * _winding(corners, face)) for face in faces), 0.0)
+
+
+def _winding(corners: Points2, face: shapely.Polygon) -> float:
+    """Return how often a closed polygon winds around a face, counter-clockwise positive."""
+    inside = face.representative_point()
+    arms = corners - np.array([inside.x, inside.y])
+    following = np.roll(arms, -1, axis=0)
+    return float(np.round(np.arctan2(cross2(arms, following), dot(arms, following)).sum() / (2.0 * np.pi)))
+
+
+def _excess(winding: float) -> float:
+    """Return how often a face is covered too often: none for 0 and 1, any inside-out cover counts."""
+    return max(winding - 1.0, -winding, 0.0)
 
 
 def label_place(outer: ArcPath, inner: tuple[ArcPath, ...], chord_mm: float) -> Vector2:

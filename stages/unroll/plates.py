@@ -28,11 +28,12 @@ def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
         inner = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i + 1}") for i, hole in enumerate(plate.holes))
     except NoSolutionError as error:
         return Outcome(None, StageReport("unroll", spec.name, (), (Finding("unroll", str(error), fatal=True),)))
-    findings = _hole_findings(outer, inner, tol)
+    overlap = sum(outline.overlap(contour.path, tol.chord_mm) for contour in (outer, *inner))
+    metrics = _metrics(overlap, tol)
+    findings = _crossing_findings(metrics[-1]) or _hole_findings(outer, inner, tol)
     low_x, low_y, high_x, high_y = arcpath.bounds(outer.path)
     corners = np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
-    overlap = outline.overlap(outer.path, tol.chord_mm)
-    report = StageReport("unroll", spec.name, _metrics(overlap, tol), findings, _detail(outer, inner, corners))
+    report = StageReport("unroll", spec.name, metrics, findings, _detail(outer, inner, corners))
     if not report.passed:
         return Outcome(None, report)
     pattern = FlatPattern(
@@ -60,6 +61,14 @@ def _metrics(overlap: float, tol: Tolerances) -> tuple[Metric, ...]:
         Metric("max_strain", 0.0, "", "proved"),
     )
     return (*exact, Metric("overlap_mm2", overlap, "mm2", "sampled", tol.chord_mm**2))
+
+
+def _crossing_findings(covered: Metric) -> tuple[Finding, ...]:
+    """Refuse contours that cross themselves."""
+    if covered.passed:
+        return ()
+    message = f"a contour crosses itself: {covered.value:.4g} mm2 lie inside it twice or inside out"
+    return (Finding("contour-crosses-itself", message, fatal=True),)
 
 
 def _hole_findings(outer: Contour, inner: tuple[Contour, ...], tol: Tolerances) -> tuple[Finding, ...]:

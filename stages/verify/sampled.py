@@ -64,12 +64,13 @@ def shortest_ruling(patch: RuledPatch, piece: int) -> Extreme:
 
 
 def weakest_normal(patch: RuledPatch, piece: int) -> Extreme:
-    """Return the least |n(1/2)| / (|p| |S_v|) strictly inside: 0 where a ruling is along the directrix."""
+    """Return the least |n(1/2)| / (|p| max|c'|) strictly inside: 0 where a ruling is along the directrix."""
+    _, speed = _largest(patch)
 
     def strength(v: Values) -> Values:
         f = frames(patch, v)
         n0, n1 = end_normals(f)
-        scale = norm(f.p) * max(float(norm(f.c0_d1).max()), float(norm(f.c1_d1).max()))
+        scale = norm(f.p) * speed
         return _inside(np.divide(norm(n0 + n1), scale, out=np.ones_like(scale), where=scale > 0), v)
 
     value, v = maximum(lambda v: -strength(v))
@@ -78,20 +79,25 @@ def weakest_normal(patch: RuledPatch, piece: int) -> Extreme:
 
 def is_regular(patch: RuledPatch) -> bool:
     """Return whether neither end normal vanishes anywhere, ends included, as far as samples show."""
+    ruling, speed = _largest(patch)
 
-    def strength(v: Values) -> Values:
-        f = frames(patch, v)
-        n0, n1 = end_normals(f)
-        scale = norm(f.p) * max(float(norm(f.c0_d1).max()), float(norm(f.c1_d1).max()))
-        return np.divide(np.minimum(norm(n0), norm(n1)), scale, out=np.zeros_like(scale), where=scale > 0)
+    def weakness(v: Values) -> Values:
+        n0, n1 = end_normals(frames(patch, v))
+        return -np.minimum(norm(n0), norm(n1))
 
-    least, _ = maximum(lambda v: -strength(v))
-    return -least > NO_NORMAL
+    return -maximum(weakness)[0] > NO_NORMAL * ruling * speed
 
 
-NO_NORMAL = 1e-9
-"""A normal |p x c'| below this share of |p| and the largest |c'| vanishes: a touching edge of regression shows as
-the square of the last sampling step, 1e-16."""
+NO_NORMAL = 1e-7
+"""A normal below this share of the largest |p| and |c'| vanishes: sampling comes within 5e-9 of a zero, and there the
+normal grows by up to some ten times its scale per unit of v."""
+
+
+def _largest(patch: RuledPatch) -> tuple[float, float]:
+    """Return the largest |p| and |c'| over the patch at 65 places, mm: scales that do not depend on where one looks."""
+    f = frames(patch, np.linspace(0.0, 1.0, 65))
+    return float(norm(f.p).max()), float(max(norm(f.c0_d1).max(), norm(f.c1_d1).max()))
+
 
 INSIDE = 1e-3
 """Rulings within this share of an end count as the end's: both figures above may fade to zero there."""

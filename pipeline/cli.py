@@ -1,0 +1,182 @@
+"""The command line: arguments -> one call; data on stdout, messages on stderr; exit codes.
+
+0 made; 1 geometry says no; 2 the usage or the job file is wrong; 3 it fits no sheet, or a method fell short; 4 a defect
+of the program; 130 interrupted.  What a command needs is imported inside it, so that `--version` waits for nothing.
+"""
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pipeline import __version__
+
+if TYPE_CHECKING:
+    from pipeline.job import Job
+    from pipeline.run import Step
+    from stages.errors import Problem
+
+EXIT_USAGE, EXIT_INTERNAL, EXIT_INTERRUPTED = 2, 4, 130
+TRACEBACK = "PLANISH_TRACEBACK"
+"""Set in the environment, it shows where in the program an internal error arose."""
+
+JobPath = click.argument("job", type=click.Path(path_type=Path), metavar="JOB.toml")
+Settings = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="part[0].surface.k0=1, say")
+AsJson = click.option("--json", "as_json", is_flag=True, help="Write one JSON document to stdout.")
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, message="%(prog)s %(version)s")
+def cli() -> None:
+    """Developable surfaces -> verified, unrolled, nested, cut."""
+
+
+@cli.command()
+@JobPath
+@click.option("-o", "--out", type=click.Path(path_type=Path), help="Output folder; out/<job name> if absent.")
+@Settings
+@AsJson
+@click.option("--quiet", is_flag=True, help="No messages but errors.")
+def run(job: Path, out: Path | None, settings: tuple[str, ...], as_json: bool, quiet: bool) -> None:
+    """Run a job: JOB.toml in, cut files and report out."""
+    from pipeline.outputs import outputs
+    from pipeline.report.document import encoded
+    from pipeline.report.lines import outcome_line
+    from pipeline.run import run_job, silent
+    from pipeline.store import replacement, safe_name, write_files
+
+    ready = load(job, settings, quiet=quiet)
+    target = out or Path("out") / safe_name(ready.name)
+    with replacement(target, keep=[job]) as draft:
+        result = run_job(ready, silent if quiet else tell)
+        report, files = outputs(result)
+        write_files(draft, files)
+    if not quiet:
+        message(outcome_line(result, str(target), sum(name.endswith(".dxf") for name in files)))
+    if as_json:
+        click.echo(encoded(report), nl=False)
+    sys.exit(result.exit_code)
+
+
+@cli.command()
+@JobPath
+@Settings
+@AsJson
+def check(job: Path, settings: tuple[str, ...], as_json: bool) -> None:
+    """Read and validate a job file, and do nothing else."""
+    ready = load(job, settings, quiet=as_json)
+    if as_json:
+        click.echo('{"errors": []}')
+    else:
+        count = len(ready.parts)
+        message(f"{job}: {count} part{'' if count == 1 else 's'}, no errors")
+
+
+@cli.command()
+@click.argument("kind")
+def init(kind: str) -> None:
+    """Print a commented job file for a KIND of surface; it runs as it is."""
+    from pipeline.kinds import template
+
+    click.echo(template(kind), nl=False)
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON Schema of the job file."""
+    from pipeline.kinds import json_schema
+
+    click.echo(json_schema())
+
+
+@cli.command()
+def kinds() -> None:
+    """List the kinds of surface with their keys."""
+    from pipeline.kinds import listing
+
+    click.echo(listing())
+
+
+@cli.command()
+def materials() -> None:
+    """List the materials with the source of every value."""
+    from pipeline.materials import listing
+
+    click.echo(listing())
+
+
+def load(job: Path, settings: Sequence[str], *, quiet: bool) -> "Job":
+    """Return the job of a file after telling what was assumed."""
+    from pipeline.job import job_of
+    from pipeline.jobfile import read
+
+    ready = job_of(read(job, settings))
+    for note in () if quiet else ready.notes:
+        message(f"note: {note}")
+    return ready
+
+
+def tell(step: "Step[object]") -> None:
+    """Say how a stage went."""
+    from pipeline.report.lines import step_line, trouble_lines
+
+    message(step_line(step), colour="red" if step.status == "fail" else None)
+    for line in trouble_lines(step.report):
+        message(line)
+
+
+def message(text: str, colour: str | None = None) -> None:
+    """Write a line to stderr; in colour only on a terminal and unless NO_COLOR is set."""
+    plain = bool(os.environ.get("NO_COLOR")) or not sys.stderr.isatty()
+    click.echo(text if plain or colour is None else click.style(text, fg=colour), err=True, color=not plain)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit; no error leaves a traceback."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        cli.main(given, prog_name="planish", standalone_mode=False)
+    except SystemExit:
+        raise
+    except (KeyboardInterrupt, click.Abort):
+        message("interrupted")
+        sys.exit(EXIT_INTERRUPTED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(0)
+    except Exception as error:
+        sys.exit(failed(error, as_json="--json" in given))
+
+
+def failed(error: Exception, *, as_json: bool) -> int:
+    """Say what went wrong, and return the exit code."""
+    from stages.errors import BadInputError, Problem
+
+    if isinstance(error, BadInputError):
+        return _complain(error.problems, as_json=as_json)
+    if isinstance(error, click.ClickException):
+        return _complain([Problem(error.format_message(), hint="planish --help shows the usage")], as_json=as_json)
+    if os.environ.get(TRACEBACK):
+        raise error
+    notes = "; ".join(getattr(error, "__notes__", []))
+    where = f" ({notes})" if notes else ""
+    text = f"internal error: {type(error).__name__}: {error}{where}; set {TRACEBACK}=1 and run again to see where"
+    _complain([Problem(text)], as_json=as_json)
+    return EXIT_INTERNAL
+
+
+def _complain(problems: "Sequence[Problem]", *, as_json: bool) -> int:
+    """Write problems, one a line or as a document."""
+    if as_json:
+        import json
+        from dataclasses import asdict
+
+        order = ("file", "line", "column", "path", "message", "hint")
+        rows = [asdict(problem) for problem in problems]
+        click.echo(json.dumps({"errors": [{key: row[key] for key in order} for row in rows]}, indent=1))
+    for problem in problems:
+        message(str(problem), colour="red")
+    return EXIT_USAGE

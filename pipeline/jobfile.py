@@ -1,0 +1,228 @@
+"""The job file: its tables, and how a file becomes a `JobFile` or a list of everything that is wrong with it.
+
+text -> plain tables (`parse`) -> `--set` -> structs, units, rules (`decode`) -> curves of DXF files (`sources`); places
+of complaints are looked up last (`locate`).  The tables of parts are those of `stages.model`.  A key is here only if
+this version does what it says.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Annotated, Literal
+
+from msgspec import Meta, field
+
+from pipeline.decode import Complaint, Walk, decode
+from pipeline.locate import Place, nearest, places
+from pipeline.parse import DEEP, SET, is_json, override, parse, read_text
+from pipeline.paths import Path, written
+from pipeline.sources import Sources
+from pipeline.units import JOB_UNITS
+from stages.errors import BadInputError, Problem
+from stages.model.curves import Table, Trouble
+from stages.model.cutfile import Flavour, Version
+from stages.model.part import PartSpec
+from stages.model.scalars import Angle, Length, Number
+from stages.model.tolerances import Class, Tolerances
+
+DEFAULTS = Tolerances()
+Text = Annotated[str, Meta(max_length=200)]
+Rotations = Literal["free"] | tuple[Angle, ...]
+
+
+def length_mm(text: float) -> Length:
+    """Return the length that a default writes."""
+    return Length(repr(text))
+
+
+def negatives(table: Table, *keys: str) -> Iterator[Trouble]:
+    """Yield the values that are given and below 0."""
+    for key in keys:
+        value = getattr(table, key)
+        if value is not None and value < 0:
+            yield Trouble(key, f"{float(value):g}", "may not be negative")
+
+
+def not_positive(table: Table, *keys: str) -> Iterator[Trouble]:
+    """Yield the values that are given and not above 0."""
+    for key in keys:
+        value = getattr(table, key)
+        if value is not None and value <= 0:
+            yield Trouble(key, f"{float(value):g}", "must be above 0")
+
+
+class JobTable(Table, frozen=True, kw_only=True):
+    """Whose job it is; name: also that of the default output folder, the file's own name if absent."""
+
+    name: Annotated[str, Meta(min_length=1, max_length=80)] | None = None
+    customer: Text | None = None
+    revision: Text | None = None
+
+
+class MaterialTable(Table, frozen=True, kw_only=True):
+    """The sheet: a name of the table (`planish materials`), values of one's own, or both.
+
+    density in kg/m3; bend_radius_min: smallest inside radius; max_strain: of the outer fibre, as a fraction.
+    """
+
+    name: Text = ""
+    thickness: Length | None = None
+    density: Number | None = None
+    bend_radius_min: Length | None = None
+    max_strain: Number | None = None
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield values that no sheet has."""
+        yield from not_positive(self, "thickness", "density", "max_strain")
+        yield from negatives(self, "bend_radius_min")
+
+
+class StockTable(Table, frozen=True, kw_only=True):
+    """Rectangular sheets; quantity absent: as many as needed; price: of one sheet."""
+
+    id: Annotated[str, Meta(min_length=1, max_length=80)]
+    width: Length
+    height: Length
+    kind: Literal["sheet"] = "sheet"
+    quantity: Annotated[int, Meta(ge=1, le=100_000)] | None = None
+    edge_gap: Length = field(default_factory=Length)
+    price: Number | None = None
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield sizes that are no sheet."""
+        yield from not_positive(self, "width", "height")
+        yield from negatives(self, "edge_gap", "price")
+        if self.edge_gap > 0 and 2 * self.edge_gap >= min(self.width, self.height):
+            yield Trouble("edge_gap", f"{float(self.edge_gap):g} mm leaves no room", "less than half the sheet")
+
+
+class NestTable(Table, frozen=True, kw_only=True):
+    """Wishes for the nest; gap: between nominal contours, kerf included; time_limit in seconds."""
+
+    gap: Length = field(default_factory=Length)
+    rotations: Rotations = "free"
+    time_limit: Number = field(default_factory=lambda: Number(10))
+    seed: Annotated[int, Meta(ge=0, le=2**31)] = 0
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a negative gap, no time, and an empty list of angles."""
+        yield from negatives(self, "gap")
+        yield from not_positive(self, "time_limit")
+        if not self.rotations:
+            yield Trouble("rotations", "no angle is allowed", 'list at least one, such as [0], or write "free"')
+
+
+class ToleranceTable(Table, frozen=True, kw_only=True):
+    """What the shop accepts; accept: the worst class that is cut; chord: contour to exact contour; join: of a strip."""
+
+    accept: Class = DEFAULTS.accept
+    chord: Length = field(default_factory=lambda: length_mm(DEFAULTS.chord_mm))
+    join: Length = field(default_factory=lambda: length_mm(DEFAULTS.join_mm))
+    normalise: bool = DEFAULTS.normalise
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield tolerances that nothing can meet."""
+        yield from not_positive(self, "chord")
+        yield from negatives(self, "join")
+
+
+class DxfTable(Table, frozen=True, kw_only=True):
+    """How the drawings are written."""
+
+    flavour: Flavour = "polyline-arcs"
+    version: Version = "R2000"
+
+
+class ReportTable(Table, frozen=True, kw_only=True):
+    """What is reported: report.json always; png: a picture of every part and sheet in preview/."""
+
+    formats: tuple[Literal["json", "png"], ...] = ("json", "png")
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a list without json: the report is the record of the job."""
+        if "json" not in self.formats:
+            yield Trouble("formats", "json is missing", "report.json is always written; add other formats to it")
+
+
+class JobFile(Table, frozen=True, kw_only=True):
+    """A whole job file."""
+
+    schema: Literal[1]
+    part: Annotated[tuple[PartSpec, ...], Meta(min_length=1)]
+    units: Literal["mm", "cm", "m", "in"] = "mm"
+    job: JobTable = JobTable()
+    material: MaterialTable = MaterialTable()
+    stock: tuple[StockTable, ...] = ()
+    nest: NestTable = field(default_factory=NestTable)
+    tolerance: ToleranceTable = field(default_factory=ToleranceTable)
+    dxf: DxfTable = DxfTable()
+    report: ReportTable = ReportTable()
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield names that occur twice: they become file names, so upper and lower case are the same."""
+        yield from repeated("part", "name", [part.name for part in self.part])
+        yield from repeated("stock", "id", [stock.id for stock in self.stock])
+        for i, part in enumerate(self.part):
+            if part.rotations == ():
+                yield Trouble(f"part[{i}].rotations", "no angle is allowed", 'list at least one, or write "free"')
+
+
+def repeated(table: str, key: str, names: Sequence[str]) -> Iterator[Trouble]:
+    """Yield the names that are the same as an earlier one."""
+    seen: Counter[str] = Counter()
+    for i, name in enumerate(names):
+        seen[name.casefold()] += 1
+        if seen[name.casefold()] > 1:
+            yield Trouble(f"{table}[{i}].{key}", f'"{name}" is taken', "upper and lower case count as the same")
+
+
+@dataclass(frozen=True, slots=True)
+class ReadJob:
+    """A job file as read: its tables, where it lies, and what was noted on the way."""
+
+    tables: JobFile
+    file: FilePath
+    notes: tuple[str, ...]
+
+
+def read(file: FilePath, settings: Iterable[str] = ()) -> ReadJob:
+    """Return the job; `BadInputError` with every problem, each with its place."""
+    text = read_text(file)
+    raw = parse(text, file)
+    set_paths = override(raw, settings)
+    walk = Walk(unit=_unit(raw))
+    sources = Sources(file.parent, walk.unit)
+    walk.resolve = sources.resolve
+    try:
+        tables = decode(walk, JobFile, raw)
+    except RecursionError:
+        raise BadInputError(Problem(DEEP, file=str(file))) from None
+    if tables is None:
+        raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
+    return ReadJob(tables, file, tuple(sources.notes))
+
+
+def _unit(raw: dict[str, object]) -> str:
+    """Return the unit of bare lengths; a wrong one is complained about when its turn comes."""
+    unit = raw.get("units")
+    return unit if isinstance(unit, str) and unit in JOB_UNITS else "mm"
+
+
+def _placed(complaints: list[Complaint], text: str, file: FilePath, set_paths: Sequence[Path]) -> list[Problem]:
+    """Return the complaints as problems with their places, in the order of the file."""
+    try:
+        found = places(text, is_json=is_json(file), wanted=[complaint.path for complaint in complaints])
+    except RecursionError:
+        found = {}
+    problems = [_problem(complaint, nearest(found, complaint.path), str(file), set_paths) for complaint in complaints]
+    return sorted(problems, key=lambda problem: (problem.file, problem.line or 0, problem.column or 0))
+
+
+def _problem(complaint: Complaint, place: Place | None, file: str, set_paths: Sequence[Path]) -> Problem:
+    """Return one complaint with the file and place it comes from, or `--set`."""
+    path = written(complaint.path)
+    if any(complaint.path[: len(given)] == given for given in set_paths):
+        return Problem(complaint.message, path=path, hint=complaint.hint, file=SET)
+    line, column = (None, None) if place is None else place.key if complaint.at == "key" else place.value
+    return Problem(complaint.message, path=path, hint=complaint.hint, file=file, line=line, column=column)

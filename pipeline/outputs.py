@@ -1,0 +1,55 @@
+"""Everything that goes into the output folder of a job: report, drawings, pictures."""
+
+from pipeline.files import drawings, file_names
+from pipeline.report.document import Document, document, encoded
+from pipeline.report.lines import stage_line, trouble_lines
+from pipeline.run import JobResult, PartRun
+from pipeline.store import REPORT
+
+
+def outputs(result: JobResult) -> tuple[Document, dict[str, bytes]]:
+    """Return the report, and every file by its path below the output folder."""
+    files = drawings(result)
+    report = document(result, files)
+    return report, {REPORT: encoded(report), **files, **pictures(result)}
+
+
+def pictures(result: JobResult) -> dict[str, bytes]:
+    """Return a picture of every surface with its pattern and of every nested sheet, if the job asks for them."""
+    if not result.job.pictures:
+        return {}
+    from pipeline.report.pictures import part_picture, sheet_picture
+
+    names = file_names(result.job)
+    drawn: dict[str, bytes] = {}
+    for run in result.parts:
+        if run.surface is not None:
+            name = f"preview/{names.parts[run.part.name]}.png"
+            drawn[name] = part_picture(run.surface, run.pattern, remarks(run), worst_v(run), reached(run))
+    patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
+    for layout in result.nest.product.layouts if result.nest.product is not None else ():
+        name = names.drawing(layout).replace("cut/", "preview/").replace(".dxf", ".png")
+        drawn[name] = sheet_picture(layout, patterns)
+    return drawn
+
+
+def remarks(run: PartRun) -> list[str]:
+    """Return what the terminal says of a part."""
+    steps = [step for step in run.steps if step.status != "skipped"]
+    return [line for step in steps for line in (stage_line(step), *trouble_lines(step.report))]
+
+
+def worst_v(run: PartRun) -> float | None:
+    """Return the place of the ruling that a part was rejected for, v counted over its patches."""
+    for step in run.steps:
+        for finding in step.report.findings:
+            place = (finding.where or {}).get("v") if finding.fatal else None
+            if isinstance(place, float | int):
+                return float(place)
+    return None
+
+
+def reached(run: PartRun) -> str | None:
+    """Return the class that verify found."""
+    classes = [step.report.detail["class"] for step in run.steps if "class" in step.report.detail]
+    return str(classes[0]) if classes else None

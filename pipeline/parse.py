@@ -1,0 +1,152 @@
+"""The text of a job file, TOML or JSON by its ending, -> plain tables and arrays; and `--set`.
+
+Numbers with a point become Decimals, so that 0.1 stays one tenth.  Syntax errors, files too large, wrong encodings and
+nesting beyond reason are problems of the file like any other.
+"""
+
+import json
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from decimal import Decimal, InvalidOperation
+from pathlib import Path as FilePath
+
+from pipeline.decode import Repeated
+from pipeline.paths import Path, parsed
+from stages.errors import BadInputError, Problem
+
+LARGEST_FILE = 20_000_000
+"""Bytes; some 300 000 points.  A file above this is no description of a part."""
+
+_TOML_PLACE = re.compile(r" \(at line (\d+), column (\d+)\)$")
+_LONG_NUMBER = re.compile(r"[0-9A-Fa-f_]{4000,}")
+DEEP = "tables or arrays are nested too deeply"
+
+
+def read_text(file: FilePath) -> str:
+    """Return the text of a job file; `BadInputError` if it is not there, too large or not UTF-8."""
+    try:
+        with file.open("rb") as stream:
+            content = stream.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise BadInputError(Problem(f"cannot be read: {reason}", file=str(file))) from None
+    if len(content) > LARGEST_FILE:
+        too_large = f"larger than {LARGEST_FILE // 10**6} MB"
+        raise BadInputError(Problem(too_large, hint="is this a job file?", file=str(file)))
+    try:
+        return content.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        before = content[: error.start]
+        line, column = before.count(b"\n") + 1, error.start - before.rfind(b"\n")
+        hint = "save the file as UTF-8"
+        raise BadInputError(Problem("not UTF-8 text", hint=hint, file=str(file), line=line, column=column)) from None
+
+
+def parse(text: str, file: FilePath) -> dict[str, object]:
+    """Return the top table; `BadInputError` with the place of a syntax error."""
+    try:
+        raw = _parse_json(text) if is_json(file) else tomllib.loads(text, parse_float=_number)
+    except RecursionError:
+        raise BadInputError(Problem(DEEP, file=str(file))) from None
+    except ValueError as error:
+        raise BadInputError(_syntax_problem(text, str(file), error)) from None
+    if not isinstance(raw, dict):
+        raise BadInputError(Problem("a job file is one table", file=str(file), line=1, column=1))
+    return raw
+
+
+def is_json(file: FilePath) -> bool:
+    """Return whether the file is read as JSON."""
+    return file.suffix.lower() == ".json"
+
+
+def _number(text: str) -> Decimal | str:
+    """Return the number; the text itself where no Decimal can hold its exponent."""
+    try:
+        return Decimal(text)
+    except InvalidOperation:
+        return text
+
+
+def _parse_json(text: str) -> object:
+    return json.loads(text, parse_float=_number, parse_constant=Decimal, object_pairs_hook=_object)
+
+
+def _object(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    """Return the object, and remember the names that json would silently overwrite."""
+    plain = dict(pairs)
+    if len(plain) == len(pairs):
+        return plain
+    table = Repeated(plain)
+    table.twice = tuple(name for name, count in Counter(name for name, _ in pairs).items() if count > 1)
+    return table
+
+
+def _syntax_problem(text: str, file: str, error: ValueError) -> Problem:
+    """Return what the parser says, in our form."""
+    if isinstance(error, json.JSONDecodeError):
+        return Problem(f"JSON: {error.msg}", file=file, line=error.lineno, column=error.colno)
+    place = _TOML_PLACE.search(str(error))
+    if place:
+        message = str(error)[: place.start()]
+        return Problem(f"TOML: {message}", file=file, line=int(place[1]), column=int(place[2]))
+    digits = _LONG_NUMBER.search(text)
+    if isinstance(error, tomllib.TOMLDecodeError) or digits is None:
+        message = f"TOML: {str(error).removesuffix(' (at end of document)')}"
+        return Problem(message, file=file, line=text.rstrip("\n").count("\n") + 1, column=1)
+    before = text[: digits.start()]
+    line, column = before.count("\n") + 1, digits.start() - before.rfind("\n")
+    return Problem("a number of thousands of digits", file=file, line=line, column=column)
+
+
+def override(raw: dict[str, object], settings: Iterable[str]) -> tuple[Path, ...]:
+    """Set `path=value` in place and return the paths set; `BadInputError` for what cannot be set."""
+    paths: list[Path] = []
+    problems: list[Problem] = []
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        path = parsed(name.strip())
+        if not (equals and path):
+            example = "write --set part[0].surface.k0=1"
+            problems.append(Problem(f'"{setting}" is not path=value', hint=example, file=SET))
+        elif not _put(raw, path, _setting_value(value.strip())):
+            hint = "the tables and arrays on the way must be there, or be tables"
+            problems.append(Problem("no such place in the job file", path=name.strip(), hint=hint, file=SET))
+        else:
+            paths.append(path)
+    if problems:
+        raise BadInputError(*problems)
+    return tuple(paths)
+
+
+SET = "--set"
+"""Stands in messages where the name of a file would."""
+
+
+def _setting_value(text: str) -> object:
+    """Return what TOML makes of the text, or the text itself: `1/3` and `steel` need no quotes."""
+    try:
+        table = tomllib.loads(f"value = {text}", parse_float=_number)
+    except (ValueError, RecursionError):
+        return text
+    return table["value"] if len(table) == 1 else text
+
+
+def _put(raw: dict[str, object], path: Path, value: object) -> bool:
+    """Set the value; missing tables are made, missing array items are not."""
+    here: object = raw
+    for step, after in zip(path, (*path[1:], None), strict=True):
+        last = after is None
+        if isinstance(step, str) and isinstance(here, dict):
+            if last:
+                here[step] = value
+            here = here.get(step) if last or not isinstance(after, str) else here.setdefault(step, {})
+        elif isinstance(step, int) and isinstance(here, list) and step < len(here):
+            if last:
+                here[step] = value
+            here = here[step]
+        else:
+            return False
+    return True

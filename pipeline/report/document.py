@@ -1,0 +1,194 @@
+"""The report of a job as one document, schema planish-report/1: the same bytes for the same job, `run` apart.
+
+Keys stand in a fixed order and numbers are written in full (shortest decimals that give the same double).  What is not
+a finite number becomes null.  Two additions to the metrics that the stages report: per part and per sheet mass, length
+of cut and number of pierces, from the contours that are cut.
+
+The status of `write` is that of the nested sheets: without a nest it is `skipped`, and the files listed are the flat
+patterns.
+"""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from pipeline import __version__
+from pipeline.files import FileNames, file_names
+from pipeline.job import Job
+from pipeline.report.figures import Figures, figures, total
+from pipeline.run import JobResult, PartRun, Step
+from pipeline.store import digest
+from stages.model.report import Finding, Metric
+
+if TYPE_CHECKING:
+    from stages.model.pattern import FlatPattern
+    from stages.model.sheet import Placement, SheetLayout
+
+SCHEMA = "planish-report/1"
+Document = dict[str, object]
+CONTENTS = ("class", "surface", "flat")
+"""The entries of a stage's detail that have a place of their own in the report."""
+
+
+def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
+    """Return the report of a job whose drawings are `files`, by their paths."""
+    names = file_names(result.job)
+    measures = {run.part.name: _measured(run, run.pattern) for run in result.parts if run.pattern is not None}
+    return {
+        "schema": SCHEMA,
+        "status": result.status,
+        "job": _job(result.job),
+        "parts": [_part(run, measures.get(run.part.name)) for run in result.parts],
+        "nest": {
+            **_step(result.nest),
+            "sheets": [_sheet(layout, measures, names) for layout in _layouts(result)],
+        },
+        "write": {
+            **_step(result.write),
+            "status": _write_status(result),
+            "files": [{"path": path, "sha256": digest(content)} for path, content in files.items()],
+        },
+        "run": {"version": __version__, "seconds": dict(result.seconds)},
+    }
+
+
+def encoded(report: Mapping[str, object]) -> bytes:
+    """Return a document as JSON, without NaN and infinities."""
+    text = json.dumps(plain(report), ensure_ascii=False, allow_nan=False, indent=1)
+    return f"{text}\n".encode()
+
+
+def plain(value: object) -> object:
+    """Return a value as JSON has it: numbers that are not finite as null, arrays as lists."""
+    if isinstance(value, bool | int | str) or value is None:
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    number = float(value)  # type: ignore[arg-type]
+    return number if math.isfinite(number) else None
+
+
+def _measured(run: PartRun, pattern: "FlatPattern") -> Figures:
+    """Return the figures of a part, its area as unroll measured it."""
+    flat = _detail(run).get("flat")
+    return figures(pattern, float(flat["area"]) if isinstance(flat, dict) else math.nan)
+
+
+def _detail(run: PartRun) -> dict[str, object]:
+    """Return the details of all stages of a part together."""
+    return {key: value for step in run.steps for key, value in step.report.detail.items()}
+
+
+def _job(job: Job) -> Document:
+    material, tol = job.material, job.tolerances
+    return {
+        "name": job.name,
+        "customer": job.customer,
+        "revision": job.revision,
+        "digest": job.digest,
+        "units": job.units,
+        "material": {
+            "name": material.name,
+            "thickness_mm": material.thickness_mm,
+            "density_kg_m3": material.density_kg_m3,
+            "bend_radius_min_mm": material.bend_radius_min_mm,
+            "max_strain": material.max_strain,
+        },
+        "tolerance": {
+            "accept": tol.accept,
+            "chord_mm": tol.chord_mm,
+            "join_mm": tol.join_mm,
+            "normalise": tol.normalise,
+        },
+        "notes": list(job.notes),
+    }
+
+
+def _part(run: PartRun, measured: Figures | None) -> Document:
+    detail = _detail(run)
+    passed = run.pattern is not None
+    return {
+        "name": run.part.name,
+        "quantity": run.part.spec.quantity,
+        "class": detail.get("class", class_without_certificate(run)),
+        "flat": detail.get("flat") if passed else None,
+        "surface": detail.get("surface") if passed else None,
+        **_figures(measured),
+        "stages": [{"stage": step.report.stage, **_step(step)} for step in run.steps],
+    }
+
+
+def class_without_certificate(run: PartRun) -> str:
+    """Return the class of a part that verify did not get to see, or did not name."""
+    return "inconclusive" if any(step.short for step in run.steps) else "rejected"
+
+
+def _figures(measured: Figures | None) -> Document:
+    if measured is None:
+        return {"mass_kg": None, "cut_length_mm": None, "pierces": None}
+    return {"mass_kg": measured.mass_kg, "cut_length_mm": measured.cut_length_mm, "pierces": measured.pierces}
+
+
+def _step(step: Step[object]) -> Document:
+    report = step.report
+    detail = {key: value for key, value in report.detail.items() if key not in CONTENTS}
+    return {
+        "status": step.status,
+        "metrics": [_metric(metric) for metric in report.metrics],
+        "findings": [_finding(finding) for finding in report.findings],
+        **({"detail": detail} if detail else {}),
+    }
+
+
+def _metric(metric: Metric) -> Document:
+    return {
+        "name": metric.name,
+        "value": metric.value,
+        "unit": metric.unit,
+        "evidence": metric.evidence,
+        "limit": metric.limit,
+        "pass": metric.passed,
+        "where": metric.where,
+    }
+
+
+def _finding(finding: Finding) -> Document:
+    return {"code": finding.code, "message": finding.message, "fatal": finding.fatal, "where": finding.where or {}}
+
+
+def _layouts(result: JobResult) -> Sequence["SheetLayout"]:
+    return () if result.nest.product is None else result.nest.product.layouts
+
+
+def _write_status(result: JobResult) -> str:
+    return "skipped" if result.write.status == "pass" and result.nest.product is None else result.write.status
+
+
+def _sheet(layout: "SheetLayout", measures: Mapping[str, Figures], names: FileNames) -> Document:
+    parts = total([measures[placed.part] for placed in layout.placements])
+    return {
+        "stock": layout.sheet.id,
+        "index": layout.index,
+        "utilisation": layout.utilisation,
+        "file": names.drawing(layout),
+        **_figures(parts),
+        "cost": layout.sheet.price,
+        "placements": [_placement(placed) for placed in layout.placements],
+    }
+
+
+def _placement(placed: "Placement") -> Document:
+    motion = placed.motion
+    return {
+        "part": placed.part,
+        "copy": placed.copy,
+        "x": motion.x,
+        "y": motion.y,
+        "angle": motion.angle_deg,
+        "mirrored": motion.mirrored,
+    }

@@ -1,0 +1,130 @@
+"""What the terminal shows of a job: a line for each stage of each part with the figures that matter, and the outcome.
+
+Where something fails, the lines below say where, how much, what is allowed, and what to do about it.
+"""
+
+from collections.abc import Iterator
+
+from pipeline.run import JobResult, Step
+from stages.model.report import Metric, StageReport, Where
+
+SHOWN: dict[str, tuple[tuple[str, str], ...]] = {
+    "construct": (("theorem_residual", "residual"), ("join_gap_mm", "join gap"), ("speed_max", "speed")),
+    "verify": (("max_warp_deg", "warp"), ("max_gaussian_curvature", "K D2"), ("min_bend_radius_mm", "R min")),
+    "unroll": (("length_error", "length error"), ("area_error", "area error"), ("metric_error", "metric error")),
+    "nest": (("utilisation", "utilisation"), ("min_gap_mm", "gap"), ("min_edge_gap_mm", "edge gap")),
+    "write": (("max_deviation_mm", "deviation"), ("closure_gap_mm", "closure"), ("entities", "entities")),
+}
+"""The metrics of each stage that are shown, and what they are called."""
+
+REMEDIES = {
+    "regular": "shorten the rulings, or move the edge of regression off the part",
+    "tangent_norm_error": "give unit vectors, or set normalise = true under [tolerance]",
+    "join_gap_mm": "make the pieces meet, or widen join under [tolerance]",
+    "planar_error_mm": "bring the points of the outline into one plane",
+    "max_deviation_mm": "widen chord under [tolerance]",
+    "not-developable": "straighten the twist along the rulings, or accept a wider class under [tolerance]",
+    "edge-of-regression": "shorten the rulings, or cut the part into pieces",
+    "bend-radius": "bend less sharply, take thinner sheet, or another material",
+    "bend-strain": "bend less sharply, take thinner sheet, or another material",
+    "apex-on-directrix": "move the apex off the curve",
+    "open-contour": "close the outline, or widen join under [tolerance]",
+    "chain-open": "make the pieces meet, or widen join under [tolerance]",
+    "zero-ruling": "keep the two curves apart",
+    "singular-ruling": "turn the rulings off the direction of the curve",
+    "does-not-fit": "give a larger sheet, more rotations, or smaller gaps",
+}
+"""What to do, by the name of a failed metric or the code of a finding."""
+
+
+def step_line(step: Step[object]) -> str:
+    """Return one line: part, stage, result, figures."""
+    subject, stage = step.report.subject, step.report.stage
+    return stage_line(step) if subject == stage else f"{subject}  {stage_line(step)}"
+
+
+def stage_line(step: Step[object]) -> str:
+    """Return the same without the part."""
+    report = step.report
+    figures = [shown for shown in (_shown(report, *entry) for entry in SHOWN[report.stage]) if shown]
+    return "  ".join([report.stage, _word(step), *_extent(report), *figures])
+
+
+def _word(step: Step[object]) -> str:
+    """Return the result in a word: FAILED, the class of a verified surface, or ok."""
+    if step.status == "fail":
+        return "FAILED"
+    return str(step.report.detail.get("class", "ok")) if step.status == "pass" else step.status
+
+
+def _extent(report: StageReport) -> list[str]:
+    """Return the size of a flat pattern, as far as the report has it."""
+    flat = report.detail.get("flat")
+    if not isinstance(flat, dict):
+        return []
+    return [f"{flat['width']:.6g} x {flat['height']:.6g} mm", f"area {flat['area']:.8g} mm2"]
+
+
+def _shown(report: StageReport, name: str, label: str) -> str:
+    metric = next((metric for metric in report.metrics if metric.name == name), None)
+    if metric is None or metric.value is None:
+        return ""
+    proved = " (proved)" if metric.evidence == "proved" else ""
+    return f"{label} {_amount(metric.value, metric.unit)}{proved}"
+
+
+def _amount(value: float | bool | None, unit: str) -> str:
+    if value is None or isinstance(value, bool):
+        return {None: "not defined", True: "true", False: "false"}[value]
+    return f"{value:.6g} {unit}".rstrip()
+
+
+def trouble_lines(report: StageReport) -> Iterator[str]:
+    """Yield what failed and what an engineer must know, with place, limit and remedy."""
+    told = {TELLS_OF.get(finding.code) for finding in report.findings}
+    for metric in report.metrics:
+        if not metric.passed and metric.name not in told:
+            yield _advised(metric.name, _failure(metric))
+    for finding in report.findings:
+        text = finding.message if " at " in finding.message else f"{finding.message}{_place(finding.where)}"
+        yield _advised(finding.code, text) if finding.fatal else f"  note: {text}"
+
+
+TELLS_OF = {
+    "not-developable": "max_warp_deg",
+    "edge-of-regression": "max_warp_deg",
+    "bend-radius": "min_bend_radius_mm",
+}
+"""Findings that say in words what a failed metric says, which is then not said twice."""
+
+
+def _failure(metric: Metric) -> str:
+    allowed = "must be" if isinstance(metric.limit, bool) else "allowed"
+    value, limit = _amount(metric.value, metric.unit), _amount(metric.limit, metric.unit)
+    return f"{metric.name} is {value}, {allowed} {limit}{_place(metric.where)}"
+
+
+def _advised(code: str, text: str) -> str:
+    remedy = REMEDIES.get(code)
+    return f"  {text}; {remedy}" if remedy else f"  {text}"
+
+
+def _place(where: Where | None) -> str:
+    if not where:
+        return ""
+    steps = [f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}" for key, value in where.items()]
+    return f" at {', '.join(steps)}"
+
+
+def outcome_line(result: JobResult, out: str, count: int) -> str:
+    """Return the last line: what was made, and where it lies."""
+    files = f"{count} drawing{'' if count == 1 else 's'}"
+    if result.status == "made":
+        sheets = len(result.nest.product.layouts) if result.nest.product else 0
+        on = f" on {sheets} sheet{'' if sheets == 1 else 's'}" if sheets else ""
+        copies = sum(run.part.spec.quantity for run in result.parts)
+        return f"made: {copies} piece{'' if copies == 1 else 's'}{on}, {files} and report.json in {out}"
+    failed = [run.part.name for run in result.parts if run.pattern is None]
+    if failed:
+        return f"{result.status}: {', '.join(failed)}; nothing nested, {files} and report.json in {out}"
+    return f"{result.status}: not all could be nested and written; {files} and report.json in {out}"

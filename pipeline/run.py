@@ -1,0 +1,162 @@
+"""`run_job`: one job through all stages, as far as each part gets, with a report all the way.
+
+A stage is imported when its turn comes, so that commands that need none of them do not wait for numpy and scipy.  A
+stage that raises `NoSolutionError` has fallen short, which is its report's fatal finding; seconds are kept apart from
+the reports, which are functions of the job alone.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING, Generic, Literal, ParamSpec, TypeVar
+
+from pipeline.files import file_names
+from pipeline.job import Job
+from stages.errors import NoSolutionError
+from stages.model.report import Finding, Outcome, Stage, StageReport
+
+if TYPE_CHECKING:
+    from stages.model.cutfile import CutFile
+    from stages.model.material import Part
+    from stages.model.pattern import FlatPattern
+    from stages.model.sheet import Nesting
+    from stages.model.surface import Certificate, Surface
+
+P = ParamSpec("P")
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+Status = Literal["made", "rejected", "no-solution"]
+StepStatus = Literal["pass", "fail", "skipped"]
+
+EXIT_CODES: dict[Status, int] = {"made": 0, "rejected": 1, "no-solution": 3}
+EXIT_INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True)
+class Step(Generic[T_co]):
+    """One stage as it went: its report, and its product if it passed; `short` if it fell short of its task."""
+
+    status: StepStatus
+    report: StageReport
+    product: T_co | None = None
+    short: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PartRun:
+    """One part through its stages."""
+
+    part: "Part"
+    steps: tuple[Step[object], ...]
+    surface: "Surface | None"
+    pattern: "FlatPattern | None"
+
+
+@dataclass(frozen=True, slots=True)
+class JobResult:
+    """What became of a job."""
+
+    job: Job
+    parts: tuple[PartRun, ...]
+    nest: "Step[Nesting]"
+    write: "Step[tuple[CutFile, ...]]"
+    seconds: dict[str, float]
+
+    @property
+    def status(self) -> Status:
+        """Return made, rejected (geometry says no), or no-solution (a method fell short, or it fits no sheet)."""
+        steps = [step for run in self.parts for step in run.steps]
+        if any(step.short for step in steps) or "fail" in (self.nest.status, self.write.status):
+            return "no-solution"
+        return "rejected" if any(step.status == "fail" for step in steps) else "made"
+
+    @property
+    def exit_code(self) -> int:
+        """Return the exit code of the command line; that of an interruption where the search was interrupted."""
+        interrupted = any(finding.code == "interrupted" for finding in self.nest.report.findings)
+        return EXIT_INTERRUPTED if interrupted and self.status == "made" else EXIT_CODES[self.status]
+
+
+Listener = Callable[[Step[object]], None]
+
+
+def silent(_step: Step[object]) -> None:
+    """Tell no one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Runner:
+    """Runs stages: keeps the seconds of each and tells a listener how it went."""
+
+    listener: Listener = silent
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def step(
+        self, stage: Stage, subject: str, call: Callable[P, Outcome[T | None]], *args: P.args, **kw: P.kwargs
+    ) -> Step[T]:
+        """Return the step that a call makes; whatever it raises but `NoSolutionError` names part and stage."""
+        start = perf_counter()
+        try:
+            outcome = call(*args, **kw)
+            passed = outcome.product is not None and outcome.report.passed
+            step: Step[T] = Step("pass", outcome.report, outcome.product) if passed else Step("fail", outcome.report)
+        except NoSolutionError as error:
+            step = Step("fail", fell_short(stage, subject, error), short=True)
+        except BaseException as error:
+            error.add_note(f"part '{subject}', stage {stage}")
+            raise
+        finally:
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - start
+        self.listener(step)
+        return step
+
+
+def fell_short(stage: Stage, subject: str, error: NoSolutionError) -> StageReport:
+    """Return the report of a stage whose method fell short."""
+    where: dict[str, float | int | str] = {"reached": error.reached, "wanted": error.wanted, "unit": error.unit}
+    return StageReport(stage, subject, findings=(Finding("no-solution", str(error), fatal=True, where=where),))
+
+
+def skipped(stage: Stage, subject: str) -> Step[T]:
+    """Return the step of a stage that was not run."""
+    return Step("skipped", StageReport(stage, subject))
+
+
+def run_job(job: Job, listener: Listener = silent) -> JobResult:
+    """Return what becomes of a job: each part constructed, verified, unrolled; all patterns nested and written.
+
+    Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
+    """
+    runner = Runner(listener)
+    parts = tuple(run_part(runner, part, job) for part in job.parts)
+    patterns = [run.pattern for run in parts if run.pattern is not None]
+    nest: Step[Nesting] = skipped("nest", job.name)
+    if job.stock and len(patterns) == len(parts):
+        from stages.nest import nest as nest_stage
+
+        nest = runner.step("nest", job.name, nest_stage, patterns, job.stock, job.options, job.tolerances)
+    write: Step[tuple[CutFile, ...]] = skipped("write", job.name)
+    if patterns:
+        from stages.write import write as write_stage
+
+        names = file_names(job)
+        named = names.patterns(patterns)
+        write = runner.step("write", job.name, write_stage, named, names.nesting(nest.product), job.machine)
+    return JobResult(job, parts, nest, write, runner.seconds)
+
+
+def run_part(runner: Runner, part: "Part", job: Job) -> PartRun:
+    """Return one part as far as it gets."""
+    from stages.construct import construct
+    from stages.unroll import unroll
+    from stages.verify import verify
+
+    name, tol = part.name, job.tolerances
+    made: Step[Surface] = runner.step("construct", name, construct, part, tol)
+    proved: Step[Certificate] = skipped("verify", name)
+    flat: Step[FlatPattern] = skipped("unroll", name)
+    if made.product is not None:
+        proved = runner.step("verify", name, verify, made.product, tol)
+    if proved.product is not None:
+        flat = runner.step("unroll", name, unroll, proved.product, tol)
+    return PartRun(part, (made, proved, flat), made.product, flat.product)

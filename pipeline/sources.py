@@ -1,0 +1,119 @@
+"""Curves that a job file takes from drawings: `{file = "rails.dxf", layer = "A"}` -> curves of its own sorts.
+
+A drawing lies where the job file says, seen from the job file.  Its unit is that of its header ($INSUNITS); a drawing
+without a unit has that of the job, and that is noted.  Pieces whose ends meet become one curve (`pipeline.drawings`).
+An outline must be closed; the holes of a plate are all closed contours of their layer.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+from pipeline.decode import ResolveError, Several, suggestion
+from pipeline.paths import Path
+from pipeline.units import UnreadableError
+from stages.model.curves import CurveSpec, Table
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+
+    from pipeline.drawings import Piece
+
+UNIT_OF_CODE = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 13: "um"}
+"""$INSUNITS, as the DXF reference numbers the units; 0 is none."""
+
+NO_DXF = "it is no DXF file"
+LARGEST_DRAWING = 100_000_000
+"""Bytes."""
+
+
+@dataclass(slots=True)
+class Sources:
+    """The drawings of one job file, each read once."""
+
+    folder: FilePath
+    unit: str
+    notes: list[str] = field(default_factory=list)
+    drawings: dict[FilePath, "Drawing"] = field(default_factory=dict)
+
+    def resolve(self, table: Table, path: Path) -> Table | Several:
+        """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
+        if not isinstance(table, CurveSpec) or table.file is None:
+            return table
+        curves, key = self._curves(table.file, table.layer), "layer" if table.layer else "file"
+        if path[-2:-1] == ("holes",) or path[-1:] == ("holes",):
+            _all_closed(curves, key)
+            return Several(tuple(curve.spec() for curve in curves))
+        if len(curves) != 1:
+            hint = "give each a layer of its own, or make their ends meet"
+            raise ResolveError(key, f"{len(curves)} separate curves where one belongs", hint)
+        if path[-1:] == ("outline",):
+            _all_closed(curves, key)
+        return curves[0].spec()
+
+    def _curves(self, name: str, layer: str | None) -> "list[Piece]":
+        """Return all curves of a layer, or of the whole model space."""
+        from pipeline.drawings import chains, pieces
+
+        drawing = self._drawing(name)
+        unit = self._unit(drawing, name)
+        layers = sorted({entity.dxf.layer for entity in drawing.modelspace()})
+        chosen = [entity for entity in drawing.modelspace() if layer is None or _same(entity.dxf.layer, layer)]
+        if not chosen:
+            message = f'{name} has nothing on the layer "{layer}"' if layer else f"{name} is empty"
+            raise ResolveError("layer" if layer else "file", message, suggestion(layer, layers) if layers else "")
+        try:
+            return chains([piece for entity in chosen for piece in pieces(entity, unit)])
+        except UnreadableError as error:
+            raise ResolveError("layer" if layer else "file", f"{name}: {error.message}", error.hint) from None
+
+    def _drawing(self, name: str) -> "Drawing":
+        file = self.folder / name
+        if file not in self.drawings:
+            self.drawings[file] = _read(file, name)
+        return self.drawings[file]
+
+    def _unit(self, drawing: "Drawing", name: str) -> str:
+        """Return the unit of a drawing."""
+        code = drawing.header.get("$INSUNITS", 0)
+        if code == 0:
+            note = f"{name} states no unit ($INSUNITS = 0): taken as {self.unit}, the unit of the job"
+            if note not in self.notes:
+                self.notes.append(note)
+            return self.unit
+        if code not in UNIT_OF_CODE:
+            known = ", ".join(f"{number} = {unit}" for number, unit in UNIT_OF_CODE.items())
+            raise ResolveError("file", f"{name} has the unit $INSUNITS = {code}", f"units read here: {known}")
+        return UNIT_OF_CODE[code]
+
+
+def _same(a: str, b: str) -> bool:
+    """Return whether two layer names are one: DXF does not tell upper from lower case."""
+    return a.casefold() == b.casefold()
+
+
+def _all_closed(curves: "list[Piece]", key: str) -> None:
+    """Refuse open curves."""
+    for curve in curves:
+        if not curve.closed:
+            (x0, y0, _), (x1, y1, _) = curve.start, curve.end
+            message = f"the curve from ({x0:.6g}, {y0:.6g}) to ({x1:.6g}, {y1:.6g}) mm is open"
+            raise ResolveError(key, message, "close the contour in the drawing")
+
+
+def _read(file: FilePath, name: str) -> "Drawing":
+    """Return the drawing."""
+    from ezdxf.filemanagement import readfile
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        if file.stat().st_size > LARGEST_DRAWING:
+            raise ResolveError("file", f"{name} is larger than {LARGEST_DRAWING // 10**6} MB", "is this a drawing?")
+        return readfile(file)
+    except FileNotFoundError:
+        raise ResolveError("file", f"there is no file {name}", f"looked for {file}") from None
+    except OSError as error:
+        raise ResolveError("file", f"{name} cannot be read: {error.strerror or NO_DXF}", "") from None
+    except (DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+        hint = "write it again as DXF R2000 or later"
+        raise ResolveError("file", f"{name} is no drawing that can be read: {error}", hint) from None

@@ -1,0 +1,179 @@
+"""Files that are there as a whole or not at all: safe names, digests, and an output folder replaced in one go.
+
+A new output folder grows beside the old one, is flushed to disk, and takes its place by renaming; the old one is
+removed last.  Between the two renames there is an instant without an output folder: no single call of the standard
+library exchanges two folders.  A folder that planish did not write is never replaced.
+"""
+
+import json
+import os
+import re
+import shutil
+import tempfile
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from hashlib import sha256
+from pathlib import Path, PurePosixPath
+
+from stages.errors import BadInputError, Problem
+
+REPORT = "report.json"
+REPORT_SCHEMA = "planish-report/"
+OURS = frozenset({REPORT, "cut", "flat", "preview", "report.html", "traveller.pdf", "results.csv", "junit.xml"})
+"""What an output folder may hold at its top."""
+HARMLESS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
+"""What file managers leave behind without being asked."""
+
+LONGEST_NAME = 60
+RESERVED = frozenset({"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(1, 10))})
+"""Names that Windows gives to devices."""
+
+
+def digest(content: bytes) -> str:
+    """Return the sha256 of some bytes, in hexadecimal."""
+    return sha256(content).hexdigest()
+
+
+def safe_name(name: str) -> str:
+    """Return a file name of letters, digits, dot, dash and underscore that every system takes."""
+    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "-", plain).strip(".-")[:LONGEST_NAME].rstrip(".-")
+    if not plain:
+        return "unnamed"
+    return f"_{plain}" if plain.split(".")[0].casefold() in RESERVED else plain
+
+
+def safe_names(names: Iterable[str]) -> dict[str, str]:
+    """Return a file name for each name, no two the same even where upper and lower case are."""
+    taken: set[str] = set()
+    chosen: dict[str, str] = {}
+    for name in names:
+        base = candidate = safe_name(name)
+        count = 1
+        while candidate.casefold() in taken:
+            count += 1
+            candidate = f"{base}-{count}"
+        taken.add(candidate.casefold())
+        chosen[name] = candidate
+    return chosen
+
+
+def refuse_foreign(out: Path, keep: Iterable[Path] = ()) -> None:
+    """Raise `BadInputError` if `out` is not free and not an output folder of planish, or holds a file to keep."""
+    hint = "choose another folder with -o"
+    inside = next((path for path in (*keep, Path.cwd()) if out in (path, *path.parents)), None)
+    if inside is not None:
+        raise BadInputError(Problem(f"the output folder would replace {inside}", hint=hint, file=str(out)))
+    if not out.exists():
+        return
+    if not out.is_dir():
+        raise BadInputError(Problem("the output folder is a file", hint=hint, file=str(out)))
+    entries = {entry.name for entry in out.iterdir()} - HARMLESS
+    strangers = sorted(entries - OURS)
+    if entries and (strangers or not _is_report(out / REPORT)):
+        what = f"holds {strangers[0]}, which planish did not write" if strangers else "is no output folder of planish"
+        raise BadInputError(Problem(what, hint=f"it would be lost; {hint}", file=str(out)))
+
+
+def _is_report(file: Path) -> bool:
+    """Return whether a file is a report of planish."""
+    try:
+        content = json.loads(file.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(content, dict) and str(content.get("schema")).startswith(REPORT_SCHEMA)
+
+
+@contextmanager
+def replacement(out: Path, keep: Iterable[Path] = ()) -> Iterator[Path]:
+    """Give an empty folder that becomes `out` if the block ends well, and vanishes if it does not.
+
+    keep: files that must not be replaced, such as the job file.  Raises `BadInputError` if `out` cannot be written,
+    before the block begins.
+    """
+    target = Path(os.path.realpath(out))
+    made: list[Path] = []
+    try:
+        refuse_foreign(target, [Path(os.path.realpath(path)) for path in keep])
+        made = [folder for folder in target.parents if not folder.exists()]
+        target.parent.mkdir(parents=True, exist_ok=True)
+        draft = Path(tempfile.mkdtemp(prefix=f".{target.name}-", suffix=".part", dir=target.parent))
+    except OSError as error:
+        _remove_empty(made)
+        raise _unwritable(out, error) from None
+    try:
+        yield draft
+        _swap(draft, target, out)
+    except BaseException:
+        shutil.rmtree(draft, ignore_errors=True)
+        _remove_empty(made)
+        raise
+
+
+def _unwritable(out: Path, error: OSError) -> BadInputError:
+    reason = error.strerror or str(error)
+    message = f"the output folder cannot be written: {reason}"
+    return BadInputError(Problem(message, hint="choose another with -o", file=str(out)))
+
+
+def _remove_empty(folders: Iterable[Path]) -> None:
+    """Remove the folders made on the way, innermost first, as far as they are empty."""
+    for folder in folders:
+        with suppress(OSError):
+            folder.rmdir()
+
+
+def _swap(draft: Path, target: Path, out: Path) -> None:
+    """Put the draft in the place of the target; on failure the old target is back."""
+    old = draft.with_suffix(".old")
+    try:
+        _flush(draft)
+        draft.chmod(NORMAL_FOLDER & ~_umask())
+        if target.exists():
+            target.rename(old)
+        try:
+            draft.rename(target)
+        except OSError:
+            if old.exists():
+                old.rename(target)
+            raise
+    except OSError as error:
+        raise _unwritable(out, error) from None
+    shutil.rmtree(old, ignore_errors=True)
+
+
+NORMAL_FOLDER = 0o777
+"""`mkdtemp` makes folders that no one else may read; an output folder has the user's normal permissions."""
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _flush(folder: Path) -> None:
+    """Make the system write a folder's files to disk, and then its entries where folders can be opened."""
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            with path.open("rb") as stream, suppress(OSError):
+                os.fsync(stream.fileno())
+    for path in (folder, *(entry for entry in folder.rglob("*") if entry.is_dir())):
+        with suppress(OSError):
+            handle = os.open(path, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write files below a folder; `BadInputError` if the disk does not take them."""
+    try:
+        for name, content in files.items():
+            path = folder / PurePosixPath(name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+    except OSError as error:
+        raise _unwritable(folder, error) from None

@@ -1,0 +1,127 @@
+"""The report of a job, through the real stages: its schema, its figures, its bytes."""
+
+import json
+import math
+from hashlib import sha256
+from importlib.resources import files
+from math import pi
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+from pipeline.job import job_of
+from pipeline.jobfile import read
+from pipeline.outputs import outputs
+from pipeline.report.document import encoded, plain
+from pipeline.run import run_job
+from tests.pipeline.jobs import CONE, PLATE, STOCK, TWISTED, write_job
+
+STEEL = '[material]\nname = "mild steel"\nthickness = 2\n'
+
+
+def made(folder: Path, text: str) -> tuple[dict[str, object], dict[str, bytes]]:
+    """Return the report as JSON reads it, and all files."""
+    _, produced = outputs(run_job(job_of(read(write_job(folder, text)))))
+    return json.loads(produced["report.json"]), produced
+
+
+def entry(report: dict[str, object], *path: str | int) -> object:
+    value: object = report
+    for step in path:
+        assert isinstance(value, dict | list)
+        value = value[step]  # type: ignore[index]
+    return value
+
+
+JOBS = {
+    "nested": PLATE + STOCK + STEEL + CONE,
+    "flat only": PLATE,
+    "rejected": PLATE + STOCK + TWISTED,
+    "too large": PLATE + STOCK.replace("100", "10"),
+}
+
+
+@pytest.mark.parametrize("name", JOBS)
+def test_a_report_keeps_its_schema(tmp_path: Path, name: str) -> None:
+    schema = json.loads(files("pipeline").joinpath("data", "report-schema.json").read_text("utf-8"))
+    report, _ = made(tmp_path, JOBS[name])
+    jsonschema.Draft202012Validator(schema).validate(report)
+    assert list(report) == schema["required"]
+
+
+@pytest.mark.parametrize(
+    ("name", "statuses", "files"),
+    [
+        ("nested", ["made", "pass", "pass"], {"flat/plate.dxf", "flat/cone.dxf", "cut/sheet-1.dxf"}),
+        ("flat only", ["made", "skipped", "skipped"], {"flat/plate.dxf"}),
+        ("rejected", ["rejected", "skipped", "skipped"], {"flat/plate.dxf"}),
+        ("too large", ["no-solution", "fail", "skipped"], {"flat/plate.dxf"}),
+    ],
+)
+def test_status_and_files_agree(tmp_path: Path, name: str, statuses: list[str], files: set[str]) -> None:
+    report, produced = made(tmp_path, JOBS[name])
+    assert [report["status"], entry(report, "nest", "status"), entry(report, "write", "status")] == statuses
+    assert set(produced) == {"report.json", *files}
+    listed = entry(report, "write", "files")
+    assert listed == [{"path": path, "sha256": sha256(produced[path]).hexdigest()} for path in produced if "/" in path]
+
+
+def test_mass_cut_length_and_pierces_have_closed_forms(tmp_path: Path) -> None:
+    hole = "holes = [{ circle = { center = [20, 15], radius = 5 } }]\n"
+    report, _ = made(tmp_path, PLATE + hole + STOCK + STEEL)
+    part = entry(report, "parts", 0)
+    assert isinstance(part, dict)
+    area = 40 * 30 - 25 * pi
+    assert part["mass_kg"] == pytest.approx(area * 2 * 7850e-9, rel=1e-12)
+    assert part["cut_length_mm"] == pytest.approx(140 + 10 * pi, rel=1e-12)
+    assert part["pierces"] == 2
+    sheet = entry(report, "nest", "sheets", 0)
+    assert isinstance(sheet, dict)
+    assert (sheet["mass_kg"], sheet["pierces"], sheet["cost"]) == (part["mass_kg"], 2, 12.5)
+
+
+def test_the_figures_of_a_sheet_are_those_of_all_its_parts(tmp_path: Path) -> None:
+    report, _ = made(tmp_path, PLATE.replace('"plate"', '"plate"\nquantity = 2') + STOCK + STEEL)
+    assert entry(report, "nest", "sheets", 0, "pierces") == 2
+    assert entry(report, "nest", "sheets", 0, "cut_length_mm") == pytest.approx(280, rel=1e-12)
+    placed = entry(report, "nest", "sheets", 0, "placements")
+    assert isinstance(placed, list)
+    assert [(row["part"], row["copy"]) for row in placed] == [("plate", 1), ("plate", 2)]
+
+
+def test_mass_is_null_where_thickness_is_not_known(tmp_path: Path) -> None:
+    report, _ = made(tmp_path, PLATE)
+    assert entry(report, "parts", 0, "mass_kg") is None
+
+
+def test_names_that_no_file_system_takes_stay_in_the_report_and_leave_the_files(tmp_path: Path) -> None:
+    report, produced = made(tmp_path, PLATE.replace('"plate"', '"../Bö/ß"') + STOCK.replace('"sheet"', '"S/1"'))
+    assert entry(report, "parts", 0, "name") == "../Bö/ß"
+    assert entry(report, "nest", "sheets", 0, "stock") == "S/1"
+    assert entry(report, "nest", "sheets", 0, "file") == "cut/S-1-1.dxf"
+    assert entry(report, "nest", "sheets", 0, "placements", 0, "part") == "../Bö/ß"
+    assert set(produced) == {"report.json", "flat/Bo.dxf", "cut/S-1-1.dxf"}
+
+
+def test_the_same_job_gives_the_same_bytes_but_for_run(tmp_path: Path) -> None:
+    text = JOBS["nested"]
+    (first, one), (second, two) = made(tmp_path, text), made(tmp_path, "# a remark\n" + text)
+    assert first.pop("run") != second.pop("run")
+    assert encoded(first) == encoded(second)
+    assert {name: one[name] for name in one if name != "report.json"} == {
+        name: two[name] for name in two if name != "report.json"
+    }
+
+
+def test_the_digest_sees_every_value(tmp_path: Path) -> None:
+    one, _ = made(tmp_path, PLATE)
+    two, _ = made(tmp_path, PLATE.replace("[40, 30]", "[40, 30.000000001]"))
+    assert entry(one, "job", "digest") != entry(two, "job", "digest")
+
+
+def test_numbers_that_are_not_finite_become_null_and_arrays_lists() -> None:
+    value = {"a": math.nan, "b": (math.inf, 0.1), "c": np.array([1.0, math.nan]), "d": np.float64(2.0), "e": True}
+    assert json.loads(encoded(value)) == {"a": None, "b": [None, 0.1], "c": [1.0, None], "d": 2.0, "e": True}
+    assert plain(np.int64(3)) == 3

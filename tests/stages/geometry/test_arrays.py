@@ -1,0 +1,93 @@
+"""Values that own arrays are read-only, checked, and stay so through a pickle."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+from stages.geometry.arrays import Array, ArrayValue, cross2, dot, norm, unit
+from stages.geometry.curves import Bezier, RationalBezier
+from stages.geometry.development import develop
+from stages.geometry.plane import CircularArc, Segment
+from stages.geometry.rigid import Rigid2
+from stages.geometry.ruled import frames
+from tests.near import assert_near
+from tests.parts import EXAMPLE_1, MITRED_CYLINDER, RIGHT_FRUSTUM, patches
+
+PATCH = patches(EXAMPLE_1)[0]
+VALUES: dict[str, ArrayValue] = {
+    "bezier": PATCH.c0,
+    "rational": RationalBezier(np.ones((3, 3)), np.ones(3)),
+    "circular": patches(RIGHT_FRUSTUM)[0].c0,
+    "along": patches(MITRED_CYLINDER)[0].p,
+    "patch": PATCH,
+    "frames": frames(PATCH, np.linspace(0.0, 1.0, 3)),
+    "flat piece": develop((PATCH,)).pieces[0],
+    "segment": Segment(np.zeros(2), np.ones(2)),
+    "arc": CircularArc(np.zeros(2), 1.0, 0.0, 1.0),
+    "motion": Rigid2(1.0, 2.0, 3.0),
+}
+
+
+def arrays_of(value: object) -> list[Array]:
+    """Return every array in a value and in the values it holds."""
+    if isinstance(value, np.ndarray):
+        return [value]
+    if isinstance(value, ArrayValue):
+        return [array for name in value.__dataclass_fields__ for array in arrays_of(getattr(value, name))]
+    return []
+
+
+@pytest.mark.parametrize("name", VALUES)
+@pytest.mark.parametrize("through", [lambda v: v, lambda v: pickle.loads(pickle.dumps(v)), copy.copy, copy.deepcopy])
+def test_no_array_of_a_value_can_be_written_to_even_after_a_pickle(name: str, through: object) -> None:
+    value = through(VALUES[name])
+    assert isinstance(value, ArrayValue)
+    assert arrays_of(value) or name == "motion"
+    for array in arrays_of(value):
+        assert not array.flags.writeable
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+
+
+@pytest.mark.parametrize("name", VALUES)
+def test_no_field_of_a_value_can_be_set(name: str) -> None:
+    field = next(iter(VALUES[name].__dataclass_fields__))
+    with pytest.raises(AttributeError):
+        setattr(VALUES[name], field, None)
+
+
+def test_a_value_keeps_its_own_copy_of_an_array() -> None:
+    mine = np.zeros(2)
+    value = Segment(mine, np.ones(2))
+    mine[0] = 7.0
+    assert value.start[0] == 0.0
+
+
+def test_a_pickle_runs_the_check_again() -> None:
+    arc = CircularArc(np.zeros(2), 1.0, 0.0, 1.0)
+    broken = pickle.dumps(arc).replace(np.float64(1.0).tobytes()[::-1], np.float64(-1.0).tobytes()[::-1])
+    with pytest.raises(ValueError, match="radius"):
+        pickle.loads(broken)
+
+
+def test_a_bezier_curve_of_no_points_is_refused() -> None:
+    with pytest.raises(ValueError, match="at least one"):
+        Bezier((), np.zeros((0, 3)))
+
+
+def test_replacing_a_field_checks_the_new_value() -> None:
+    with pytest.raises(ValueError, match="finite"):
+        Rigid2().replace(x=np.inf)
+
+
+def test_products_and_lengths_go_along_the_last_axis() -> None:
+    a, b = np.arange(6.0).reshape(2, 3), np.ones((2, 3))
+    assert dot(a, b).tolist() == [3.0, 12.0]
+    assert_near(norm(a), np.sqrt([5.0, 50.0]), bound=1e-15, why="one rounding")
+    assert cross2(np.array([[1.0, 2.0]]), np.array([[3.0, 5.0]])).tolist() == [-1.0]
+
+
+def test_a_zero_vector_has_no_direction_and_stays_zero() -> None:
+    assert unit(np.array([[3.0, 0.0, 4.0], [0.0, 0.0, 0.0]])).tolist() == [[0.6, 0.0, 0.8], [0.0, 0.0, 0.0]]

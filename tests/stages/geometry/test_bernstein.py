@@ -1,0 +1,125 @@
+"""Exact polynomials: every operation against plain evaluation in fractions, at more places than the degree."""
+
+from fractions import Fraction
+from math import comb
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from stages.geometry.bernstein import (
+    Polynomial,
+    add,
+    cross,
+    derivative,
+    divide_ends,
+    elevate,
+    end_zeros,
+    from_bernstein,
+    halves,
+    inner,
+    multiply,
+    subtract,
+    vector_from_points,
+    whole,
+)
+
+FRACTIONS = st.fractions(min_value=-100, max_value=100, max_denominator=1000)
+COEFFICIENTS = st.lists(FRACTIONS, min_size=1, max_size=7)
+PLACES = [Fraction(k, 17) for k in range(18)]
+"""Polynomials of degree up to 17 that agree at 18 places are equal."""
+
+
+def by_de_casteljau(coefficients: list[Fraction], v: Fraction) -> Fraction:
+    row = list(coefficients)
+    while len(row) > 1:
+        row = [(1 - v) * a + v * b for a, b in zip(row, row[1:], strict=False)]
+    return row[0]
+
+
+@given(COEFFICIENTS)
+def test_a_polynomial_has_the_values_of_its_bernstein_coefficients(coefficients: list[Fraction]) -> None:
+    f = from_bernstein(coefficients)
+    assert all(f(v) == by_de_casteljau(coefficients, v) for v in PLACES)
+
+
+@given(COEFFICIENTS, COEFFICIENTS)
+def test_products_sums_and_differences_are_exact(a: list[Fraction], b: list[Fraction]) -> None:
+    f, g = from_bernstein(a), from_bernstein(b)
+    for v in PLACES:
+        assert multiply(f, g)(v) == f(v) * g(v)
+        assert add(f, g)(v) == f(v) + g(v)
+        assert add(f, g, sign=-1)(v) == f(v) - g(v)
+
+
+@given(COEFFICIENTS, st.integers(0, 4))
+def test_elevation_changes_the_degree_and_no_value(coefficients: list[Fraction], more: int) -> None:
+    f = from_bernstein(coefficients)
+    raised = elevate(f, f.degree + more)
+    assert raised.degree == f.degree + more
+    assert all(raised(v) == f(v) for v in PLACES)
+
+
+@given(COEFFICIENTS)
+def test_the_derivative_is_that_of_the_monomials(coefficients: list[Fraction]) -> None:
+    f = from_bernstein(coefficients)
+    slope = derivative(f)
+    monomials = _monomials(f)
+    for v in PLACES:
+        assert slope(v) == sum(i * c * v ** (i - 1) for i, c in enumerate(monomials) if i)
+
+
+def _monomials(f: Polynomial) -> list[Fraction]:
+    n = f.degree
+    made = [Fraction(0)] * (n + 1)
+    for i, c in enumerate(f.scaled):
+        for j in range(n - i + 1):
+            made[i + j] += Fraction(c, f.denominator) * comb(n - i, j) * (-1) ** j
+    return made
+
+
+POINTS = st.lists(st.tuples(FRACTIONS, FRACTIONS, FRACTIONS), min_size=1, max_size=5)
+
+
+@settings(max_examples=30)
+@given(POINTS, POINTS)
+def test_vector_products_are_those_of_the_values(a: list[tuple[Fraction, ...]], b: list[tuple[Fraction, ...]]) -> None:
+    f, g = vector_from_points(a), vector_from_points(b)
+    for v in PLACES:
+        x, y = [c(v) for c in f], [c(v) for c in g]
+        assert [c(v) for c in subtract(f, g)] == [p - q for p, q in zip(x, y, strict=True)]
+        assert inner(f, g)(v) == sum(p * q for p, q in zip(x, y, strict=True))
+        assert [c(v) for c in cross(f, g)] == [
+            x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0],
+        ]  # fmt: skip
+
+
+@given(COEFFICIENTS.filter(any), st.integers(0, 3), st.integers(0, 3))
+def test_factors_at_the_ends_are_found_and_divided_out(coefficients: list[Fraction], a: int, b: int) -> None:
+    f = from_bernstein(coefficients)
+    with_zeros = Polynomial((0,) * a + f.scaled + (0,) * b, f.denominator)
+    own = end_zeros(f)
+    assert end_zeros(with_zeros) == (own[0] + a, own[1] + b)
+    rest = divide_ends(with_zeros, (a, b))
+    assert all(rest(v) * v**a * (1 - v) ** b == with_zeros(v) for v in PLACES)
+    assert end_zeros(Polynomial((0, 0, 0))) == (0, 0)
+
+
+@given(COEFFICIENTS, st.lists(st.booleans(), max_size=8))
+def test_a_part_of_a_polynomial_is_bounded_by_its_coefficients(coefficients: list[Fraction], turns: list[bool]) -> None:
+    f = from_bernstein(coefficients)
+    piece, low, width = whole(f), Fraction(0), Fraction(1)
+    for right in turns:
+        piece, width = halves(piece)[right], width / 2
+        low += width if right else 0
+    scale = piece.denominator << piece.shift
+    least, most = Fraction(min(piece.b), scale), Fraction(max(piece.b), scale)
+    values = [f(low + width * v) for v in PLACES]
+    assert all(least <= value <= most for value in values)
+    assert (Fraction(piece.b[0], scale), Fraction(piece.b[-1], scale)) == (values[0], values[-1])
+    assert (piece.low, piece.high) == (float(least), float(most))
+    assert piece.magnitude == float(max(abs(least), abs(most)))
+
+
+def test_a_polynomial_of_zeros_is_zero_and_a_tiny_one_is_not() -> None:
+    assert from_bernstein([Fraction(0)] * 4).is_zero
+    assert not from_bernstein([Fraction(0), Fraction(1, 10**40), Fraction(0)]).is_zero

@@ -1,0 +1,49 @@
+"""Area and length of closed contours: closed forms, also far from the origin and through it."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from stages.geometry.arrays import EPS
+from stages.geometry.contours import area, length
+from stages.geometry.development import DevelopedEdge, develop
+from stages.geometry.plane import CircularArc, PlaneCurve, Segment
+from tests.near import assert_near, assert_relative
+from tests.parts import RIGHT_FRUSTUM, patches
+
+
+def polygon(*corners: tuple[float, float]) -> list[PlaneCurve]:
+    points = np.array(corners)
+    return [Segment(a, b) for a, b in zip(points, np.roll(points, -1, axis=0), strict=True)]
+
+
+@pytest.mark.parametrize("shift", [0.0, 1.0, 1e6])
+def test_a_polygon_has_the_area_of_the_shoelace_formula(shift: float) -> None:
+    edges = polygon(*((x + shift, y + shift) for x, y in ((0.0, 0.0), (4.0, 1.0), (3.0, 5.0))))
+    assert_near(area(edges), 8.5, bound=64 * EPS * max(8.5, 6.0 * shift), why="corners rounded where they are")
+    assert_near(length(edges), 17**0.5 * 2 + 34**0.5, bound=64 * EPS * max(14.0, shift), why="corners rounded")
+
+
+@pytest.mark.parametrize("slope", [1.0 / 3.0, 0.7, 1.1])
+def test_an_edge_that_points_at_the_origin_has_an_area_of_zero_and_no_trouble(slope: float) -> None:
+    edges = polygon((0.1, 0.1 * slope), (0.7, 0.7 * slope), (0.2, 5.0))
+    assert area(edges) > 0.0
+    assert area(edges[::-1]) > 0.0
+
+
+def test_the_sense_of_a_contour_is_the_sign_of_its_area() -> None:
+    disc: list[PlaneCurve] = [CircularArc(np.array([1e3, -1e3]), 2.0, 0.3, 2.0 * pi)]
+    hole: list[PlaneCurve] = [CircularArc(np.array([1e3, -1e3]), 2.0, 0.3, -2.0 * pi)]
+    assert_relative([area(disc), -area(hole)], [4.0 * pi] * 2, bound=64 * EPS * 1e3, why="a centre at 1e3")
+    assert_relative([length(disc), length(hole)], [4.0 * pi] * 2, bound=64 * EPS * 1e3, why="a centre at 1e3")
+
+
+def test_a_developed_edge_has_the_length_of_its_curve() -> None:
+    piece = develop(patches(RIGHT_FRUSTUM)).pieces[0]
+    for u, radius in ((0.0, 3.0), (1.0, 1.5)):
+        for reverse in (False, True):
+            edge = DevelopedEdge(piece, u, reverse)
+            assert_relative([length([edge])], [2.0 * pi * radius], bound=1e-13, why="closed form")
+            ends = edge.at(np.array([0.0, 1.0]))
+            assert_near(DevelopedEdge(piece, u, not reverse).at(np.array([1.0, 0.0])), ends, bound=0.0, why="same points")

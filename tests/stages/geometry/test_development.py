@@ -1,0 +1,310 @@
+"""The flat map: closed forms, 40-digit oracles by another formula, invariance, and what it refuses."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import hypot, pi, tan
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from stages.errors import NoSolutionError
+from stages.geometry import development
+from stages.geometry.arrays import EPS, Array, norm
+from stages.geometry.curves import Circular, bezier, elevated
+from stages.geometry.development import DevelopedEdge, Development, develop, positions, velocities
+from stages.geometry.ruled import RuledPatch, between, part
+from tests import oracles
+from tests.near import assert_near, assert_relative
+from tests.oracles import Space
+from tests.parts import (
+    AUMANN_CUBIC,
+    AUMANN_FIRST,
+    AUMANN_POINTS,
+    ELLIPTIC_CYLINDER,
+    EXAMPLE_1,
+    MITRED_CYLINDER,
+    OBLIQUE_CONE,
+    QUINTIC_TANGENT,
+    RIGHT_FRUSTUM,
+    Table,
+    aumann,
+    patches,
+)
+from tests.strategies import motions, moved, scaled
+
+U = np.array([0.0, 0.3, 1.0])
+V = np.linspace(0.0, 1.0, 11)
+GRID_U, GRID_V = (axis.ravel() for axis in np.meshgrid(U, V, indexing="ij"))
+
+
+def flat(made: Development, u: Array = GRID_U, v: Array = GRID_V) -> Array:
+    """Return flat positions of a strip whose parameter v runs evenly over its pieces in [0, 1]."""
+    count = len(made.pieces)
+    index = np.minimum((v * count).astype(int), count - 1)
+    points = np.zeros((v.size, 2))
+    for i, piece in enumerate(made.pieces):
+        here = index == i
+        points[here] = positions(piece, u[here], v[here] * count - i)
+    return points
+
+
+def distances(points: Array) -> Array:
+    """Return all distances between points: what no motion and no mirror changes."""
+    return norm(points[:, None] - points[None, :])
+
+
+# Closed forms
+
+
+@pytest.mark.parametrize("sweep", [10, 90, 180, 360])
+@pytest.mark.parametrize(("r0", "r1", "height"), [(3, 1.5, 4), (3, 0, 4), (0, 3, 4), (1, 3, 0), (3, 0, 0), (5, 5, 2)])
+def test_a_right_frustum_unrolls_to_its_sector(r0: float, r1: float, height: float, sweep: int) -> None:
+    table = {"kind": "cone", "radius0": r0, "radius1": r1, "height": height, "sweep": sweep}
+    points = flat(develop(patches(table)))
+    slant, a = hypot(r1 - r0, height), np.radians(sweep) * GRID_V
+    if r0 == r1:
+        expected = np.stack([GRID_U * slant, r0 * a], axis=1)
+    else:
+        outward = 1.0 if r1 > r0 else -1.0
+        turned = a * abs(r1 - r0) / slant
+        reach = (r0 + (r1 - r0) * GRID_U) * slant / abs(r1 - r0)
+        start = r0 * slant / abs(r1 - r0)
+        # c0(0) at the origin, the first ruling along +x, c0 leaving towards +y
+        expected = np.stack([outward * (reach * np.cos(turned) - start), reach * np.sin(turned)], axis=1)
+    assert_near(points, expected, bound=1e-14 * 4 * pi * 5, why="1e-14 of an arc of up to 2 pi 5 mm")
+
+
+@pytest.mark.parametrize("normal", [f"-{tan(pi / 6)}", "0", "2"])
+def test_a_mitred_pipe_unrolls_to_a_sine_curve(normal: str) -> None:
+    """x + 5 - tan x 2 cos(y / 2): the plane z = 5 - n x over the circle of radius 2, at 50 places."""
+    end = {"point": [0, 0, 5], "normal": [normal, 0, 1]}
+    piece = develop(patches(MITRED_CYLINDER | {"end_plane": end})).pieces[0]
+    v = np.linspace(0.0, 1.0, 50)
+    expected = np.stack([5.0 - float(normal) * 2.0 * np.cos(2.0 * pi * v), 4.0 * pi * v], axis=1)
+    assert_near(positions(piece, np.ones(50), v), expected, bound=1e-13, why="1e-14 of 12.6 mm")
+    base = np.stack([np.zeros(50), 4.0 * pi * v], axis=1)
+    assert_near(positions(piece, np.zeros(50), v), base, bound=1e-13, why="1e-14 of 12.6 mm")
+
+
+def test_a_plane_patch_unrolls_to_itself() -> None:
+    patch = patches(EXAMPLE_1)[0]
+    space = (1.0 - GRID_U)[:, None] * patch.c0.jet(GRID_V, 0)[0] + GRID_U[:, None] * patch.c1.jet(GRID_V, 0)[0]
+    assert_near(distances(flat(develop((patch,)))), distances(space), bound=1e-14 * 90, why="1e-14 of 90 mm")
+
+
+def test_a_tangent_surface_of_a_helix_unrolls_to_circles() -> None:
+    """Edge (2 cos t, 2 sin t, t), rulings from 1/2 to 2 along the tangent: its curvature 2/5 stays in the flat.
+
+    The tangent of a circular helix is circular motion again: T = (-2 sin t, 2 cos t, 1) / sqrt 5.
+    """
+    x, y, z = np.eye(3)
+    root = 5.0**0.5
+
+    def rail(reach: float) -> Circular:
+        u, v = 2.0 * x + 2.0 * reach / root * y, 2.0 * y - 2.0 * reach / root * x
+        return Circular(reach / root * z, u, v, z, 0.0, 2.0)
+
+    made = develop((between(rail(0.5), rail(2.0)),))
+    s = 2.0 * root * GRID_V
+    turned, reach = 0.4 * s, 0.5 + 1.5 * GRID_U
+    edge = 2.5 * np.stack([np.sin(turned), 1.0 - np.cos(turned)], axis=1)
+    tangent = np.stack([np.cos(turned), np.sin(turned)], axis=1)
+    expected = edge + reach[:, None] * tangent - np.array([0.5, 0.0])
+    assert_near(flat(made), expected, bound=1e-13, why="1e-14 of 6 mm")
+
+
+# 40-digit oracles
+
+ELLIPSE = oracles.turning((0, 0, 0), (5, 0, 0), (0, 2, 0), (0, 0, 0), 2 * mp.pi)
+CIRCLE = oracles.turning((0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 0), 2 * mp.pi)
+OBLIQUE_TOP = oracles.turning(("1.125", "0.375", 3), ("0.5", 0, 0), (0, "0.5", 0), (0, 0, 0), 2 * mp.pi)
+STEP = mpf(3) / mp.sqrt(mpf(5) / 4)
+
+
+def lifted(v: mpf) -> oracles.Jet:
+    """The elliptic cylinder's upper edge: 3 mm along (0, 1/2, 1)."""
+    position, slope, bend = ELLIPSE(v)
+    return oracles.add(position, (mpf(0), STEP / 2, STEP)), slope, bend
+
+
+def pair(table: Table) -> tuple[Space, Space]:
+    c0, c1 = table["c0"], table["c1"]
+    assert isinstance(c0, dict)
+    assert isinstance(c1, dict)
+    return oracles.bezier(c0["bezier"]), oracles.bezier(c1["bezier"])
+
+
+ORACLES: dict[str, tuple[Table, tuple[Space, Space]]] = {
+    "quintic tangent surface": (QUINTIC_TANGENT, pair(QUINTIC_TANGENT)),
+    "Aumann's cubic": (AUMANN_CUBIC, pair(AUMANN_CUBIC)),
+    "oblique cone": (OBLIQUE_CONE, (CIRCLE, OBLIQUE_TOP)),
+    "elliptic cylinder, uneven speed": (ELLIPTIC_CYLINDER, (ELLIPSE, lifted)),
+}
+
+
+@pytest.mark.parametrize("name", ORACLES)
+def test_flat_positions_are_those_of_the_geodesic_curvature_at_40_digits(name: str) -> None:
+    table, (c0, c1) = ORACLES[name]
+    exact = oracles.flat_map(c0, c1)
+    u, v = np.tile([0.0, 0.6, 1.0], 4), np.repeat([0.1, 0.37, 0.8, 1.0], 3)
+    expected = np.array([exact(a, b) for a, b in zip(u, v, strict=True)], dtype=float)
+    size = float(np.abs(expected).max())
+    found = positions(develop(patches(table)).pieces[0], u, v)
+    assert_near(found, expected, bound=2e-14 * size, why="some 1e-14 of the size, as the module says")
+
+
+def test_the_oracle_agrees_with_a_closed_form() -> None:
+    top = oracles.turning((0, 0, 4), ("1.5", 0, 0), (0, "1.5", 0), (0, 0, 0), 2 * mp.pi)
+    base = oracles.turning((0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 0), 2 * mp.pi)
+    slant = mp.sqrt(mpf(4) ** 2 + mpf("1.5") ** 2)
+    assert abs(oracles.area(base, top) - mp.pi * mpf("4.5") * slant) < mpf(10) ** -30
+    assert abs(oracles.sector(base, (0, 0, 8)) - 2 * mp.pi * 3 / (2 * slant)) < mpf(10) ** -30
+    x, y = oracles.flat_map(base, top)(0, 1)
+    angle = 2 * mp.pi * mpf("1.5") / slant
+    reach = 2 * slant
+    assert abs(x - (reach - reach * mp.cos(angle))) + abs(y - reach * mp.sin(angle)) < mpf(10) ** -25
+
+
+# Invariance
+
+
+SHAPES = [QUINTIC_TANGENT, AUMANN_CUBIC, aumann(AUMANN_POINTS, AUMANN_FIRST, "-1", "-2")]
+
+
+@settings(max_examples=12)
+@given(st.sampled_from(SHAPES), motions())
+def test_moving_a_surface_does_not_change_its_pattern(table: Table, motion: object) -> None:
+    made = patches(table)
+    other = develop(tuple(moved(patch, motion) for patch in made))
+    bound = 1e-14 * 1000 + 64 * EPS * 2000
+    assert_near(flat(other), flat(develop(made)), bound=bound, why="control points rounded at up to 2 m")
+
+
+@pytest.mark.parametrize("factor", [Fraction(1, 1000), Fraction(1, 7), Fraction(25), Fraction(4000)])
+@pytest.mark.parametrize("table", SHAPES)
+def test_a_larger_surface_has_the_same_pattern_larger(table: Table, factor: Fraction) -> None:
+    made = patches(table)
+    small = flat(develop(made))
+    large = flat(develop(tuple(scaled(patch, factor) for patch in made)))
+    bound = 2e-14 * float(np.abs(small).max())
+    assert_near(large / float(factor), small, bound=bound, why="1e-14 of the size, twice")
+
+
+def turned_around(patch: RuledPatch) -> RuledPatch:
+    return between(*(bezier(c.exact[::-1]) for c in (patch.c0, patch.c1)))
+
+
+def raised(patch: RuledPatch) -> RuledPatch:
+    return between(*(bezier(elevated(c.exact, 8)) for c in (patch.c0, patch.c1)))
+
+
+SAME_SHAPE: dict[str, tuple[Callable[[RuledPatch], tuple[RuledPatch, ...]], Array, Array]] = {
+    "the other way round": (lambda p: (turned_around(p),), GRID_U, 1.0 - GRID_V),
+    "edges exchanged": (lambda p: (between(p.c1, p.c0),), 1.0 - GRID_U, GRID_V),
+    "a higher degree": (lambda p: (raised(p),), GRID_U, GRID_V),
+    "in two pieces": (
+        lambda p: (part(p, Fraction(0), Fraction(1, 2)), part(p, Fraction(1, 2), Fraction(1))), GRID_U, GRID_V,
+    ),
+    "in three pieces": (
+        lambda p: tuple(part(p, Fraction(i, 3), Fraction(i + 1, 3)) for i in range(3)), GRID_U, GRID_V,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("way", SAME_SHAPE)
+@pytest.mark.parametrize("table", SHAPES)
+def test_the_pattern_does_not_depend_on_how_the_surface_is_written(table: Table, way: str) -> None:
+    patch = patches(table)[0]
+    rewritten, u, v = SAME_SHAPE[way]
+    expected = distances(flat(develop((patch,))))
+    found = distances(flat(develop(rewritten(patch)), u, v))
+    assert_near(found, expected, bound=4e-14 * float(expected.max()), why="1e-14 of the size on both sides")
+
+
+# Frame, directions, refusals
+
+
+def test_the_first_ruling_points_along_x_and_the_first_directrix_leaves_upwards() -> None:
+    for table in (QUINTIC_TANGENT, OBLIQUE_CONE, ELLIPTIC_CYLINDER):
+        piece = develop(patches(table)).pieces[0]
+        first = positions(piece, np.array([0.0, 1.0]), np.zeros(2))
+        assert_near(first[0], [0.0, 0.0], bound=1e-12, why="the origin")
+        assert first[1, 0] > 0.0
+        assert_near(first[1, 1], 0.0, bound=1e-12, why="along x")
+        assert velocities(piece, np.array([0.0]), np.array([0.0]))[0, 1] > 0.0
+
+
+def test_the_last_ruling_points_along_x_where_the_first_has_no_length() -> None:
+    table = {"kind": "ruled", "c0": {"line": [[0, 0, 0], [3, 0, 0]]}, "c1": {"line": [[0, 0, 0], [3, 4, 0]]}}
+    corners = flat(develop(patches(table)), np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))
+    expected = [[0.0, 0.0], [0.0, 0.0], [4.0, 3.0], [0.0, 3.0]]
+    assert_near(corners, expected, bound=1e-14, why="a triangle with its last ruling of 4 mm along x, at y = 3")
+
+
+@pytest.mark.parametrize("u", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize(
+    "table",
+    [QUINTIC_TANGENT, OBLIQUE_CONE, RIGHT_FRUSTUM | {"radius1": 0}, RIGHT_FRUSTUM | {"radius0": 0},
+     {"kind": "ruled", "c0": {"line": [[0, 0, 0], [3, 0, 0]]}, "c1": {"line": [[0, 0, 0], [3, 4, 0]]}}],
+)  # fmt: skip
+def test_directions_of_edges_are_the_differences_of_positions_also_at_both_ends(table: Table, u: float) -> None:
+    piece = develop(patches(table)).pieces[0]
+    step = 1e-5
+    for reverse in (False, True):
+        edge = DevelopedEdge(piece, u, reverse)
+        t = np.array([0.0, 0.4, 1.0 - step])
+        quotient = (edge.at(t + step) - edge.at(t)) / step
+        middle = edge.derivative(t + step / 2.0)
+        size = float(norm(middle).max()) + 1.0
+        assert_near(middle, quotient, bound=size * (40 * step**2 + 1e-14 / step), why="a central difference")
+        ends = np.array([0.0, 1.0])
+        beside = edge.derivative(np.array([step, 1.0 - step]))
+        assert_near(edge.derivative(ends), beside, bound=size * 20 * step, why="the direction beside it, 20/mm at most")
+
+
+def test_parallel_rulings_stay_parallel_where_they_shrink_to_nothing() -> None:
+    """A pipe cut to a point at its seam, its axis in no special direction: an area in closed form.
+
+    Plane x + z = 100 over the circle of radius 100 along d = (0.3, 0.2, 1): reach (100 - x) / 1.3, length times |d|.
+    The area of the hoof is the integral of the ruling times the width across it, |d x c'|.
+    """
+    direction = np.array([0.3, 0.2, 1.0])
+    circle = {"circle": {"center": [0, 0, 0], "radius": 100}}
+    table = {"kind": "cylinder", "directrix": circle, "direction": [0.3, 0.2, 1],
+             "end_plane": {"point": [100, 0, 0], "normal": [1, 0, 1]}}  # fmt: skip
+    made = develop(patches(table))
+    v = np.linspace(0.0, 1.0, 21)
+    ends = [positions(made.pieces[0], np.full(21, u), v) for u in (0.0, 1.0)]
+    rulings = ends[1] - ends[0]
+    length = (100.0 - 100.0 * np.cos(2.0 * pi * v)) / 1.3 * norm(direction)
+    assert_near(norm(rulings), length, bound=1e-12, why="1e-14 of 164 mm")
+    across = rulings[:, 0] * rulings[10, 1] - rulings[:, 1] * rulings[10, 0]
+    assert_near(across, 0.0 * v, bound=1e-14 * 164**2 * 4, why="one direction")
+
+
+def test_rulings_that_turn_without_end_are_refused_with_the_number_reached() -> None:
+    folded = patches(aumann(AUMANN_POINTS, AUMANN_FIRST, "3", "-2"))[0]
+    with pytest.raises(NoSolutionError, match="unrolling piece 0"):
+        develop((folded,))
+
+
+@pytest.mark.parametrize("name", ["_chained", "MOST_TURN"])
+def test_the_closed_forms_above_see_a_planted_fault(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    if name == "MOST_TURN":
+        monkeypatch.setattr(development, "MOST_TURN", 100.0)
+    else:
+        chained = development._chained
+        monkeypatch.setattr(development, "_chained", lambda local, start: chained(local, start) * (1.0 + 1e-12))
+    with pytest.raises(AssertionError):
+        test_a_right_frustum_unrolls_to_its_sector(3, 0, 0, 360)
+
+
+def test_a_full_circle_of_a_plane_ring_closes() -> None:
+    piece = develop(patches({"kind": "cone", "radius0": 1, "radius1": 3, "height": 0, "sweep": 360})).pieces[0]
+    both = positions(piece, np.array([0.0, 0.0]), np.array([0.0, 1.0]))
+    assert_near(both[0], both[1], bound=1e-13, why="1e-14 of 2 pi mm")
+    half = positions(piece, np.array([1.0]), np.array([0.5]))[0]
+    assert_relative(half[:1], [-4.0], bound=1e-13, why="the far side, 1 mm beyond a centre at -1 and 3 mm from it")
