@@ -84,7 +84,7 @@ def _title(canvas: Canvas, surface: Surface, pattern: FlatPattern | None, reache
     if pattern is not None:
         facts.append(f"area {area_text(area_mm2(pattern))}")
     if material.thickness_mm:
-        facts.append(f"{material.name} {material.thickness_mm:g} mm".strip())
+        facts.append(f"{material.name} {material.thickness_mm:g} mm thick".strip())
     canvas.text((MARGIN, HEIGHT - 0.64), "   |   ".join(facts), 10.0, align=("left", "center"))
     canvas.lines([np.array([[MARGIN, HEIGHT - HEAD], [WIDTH - MARGIN, HEIGHT - HEAD]])], GREY, 0.6)
 

@@ -202,8 +202,8 @@ class Canvas:
         """Return the page as PNG."""
         from PIL import Image
 
-        self._agg.draw()
-        pixels = np.asarray(self._agg.buffer_rgba())[..., :3]
+        self._agg.draw()  # type: ignore[no-untyped-call]
+        pixels = np.asarray(self._agg.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
         stream = BytesIO()
         Image.fromarray(np.ascontiguousarray(pixels)).save(stream, "png", compress_level=COMPRESSION)
         return stream.getvalue()

@@ -77,7 +77,7 @@ class Room:
         return float((self.corners[1] - self.corners[0]).max()) * self.fit(box).scale
 
 
-MARGINS = (DIMENSION_GAP + 0.4, 1.0, 0.5, 0.7)
+MARGINS = (DIMENSION_GAP + 0.4, 1.0, 0.75, 0.7)
 WIDE_MARGINS = (BESIDE_GAP + 1.4, 1.0, BESIDE_GAP, 0.7)
 """Around a pattern, inches (left, bottom, right, top); the wide ones where text stands beside short lines."""
 

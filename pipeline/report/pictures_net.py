@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import Array, Indices, Points3, Values, norm
+from stages.geometry.arrays import Array, Indices, Mask, Points3, Values, norm
 from stages.model.surface import RuledSurface
 
 RULINGS = 24
@@ -41,7 +41,7 @@ class Net:
 
     v: Values
     points: Array
-    joined: Array
+    joined: Mask
     rulings: Indices
     worst: int | None
 

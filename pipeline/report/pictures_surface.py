@@ -133,13 +133,14 @@ def paint(canvas: Canvas, drawn: Sequence[Painting], fit: Fit) -> None:
 
 def outline_points(shape: Net, frame: Points3) -> Points2:
     """Return the points of the net as they are seen, shape (k, 2), mm."""
-    return (shape.points.reshape(-1, 3) @ frame.T)[:, :2]
+    seen: Points2 = (shape.points.reshape(-1, 3) @ frame.T)[:, :2]
+    return seen
 
 
 RIM_LIFT = 0.02
 """How far a rim is brought forward, as a share of the depth: faces beside it that turn away would cover half of it."""
 
-MARGINS = (0.6, 0.8, 0.6, 0.6)
+MARGINS = (0.6, 0.8, 0.6, 0.7)
 """Around the surface for labels, axes and scale, inches: left, bottom, right, top."""
 
 
@@ -159,10 +160,12 @@ def draw_surface(canvas: Canvas, box: Box, shape: Net, frame: Points3) -> None:
 
 def _ghosts(canvas: Canvas, edges: Sequence[Painting], fit: Fit) -> None:
     """Draw edges once more, faintly, so that the hidden ones can be followed."""
+    from matplotlib.colors import to_hex
+
     for one in edges:
         pieces = list(fit.place(one.corners[..., :2]))
         if pieces:
-            canvas.lines(pieces, tuple(one.edge[0]), 0.8, alpha=0.35)
+            canvas.lines(pieces, to_hex(one.edge[0]), 0.8, alpha=0.35)
 
 
 def _names(canvas: Canvas, shape: Net, frame: Points3, fit: Fit) -> None:

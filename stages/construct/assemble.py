@@ -26,7 +26,6 @@ from stages.construct.quintic import (
     vector,
 )
 from stages.construct.strip import joins_detail, strip_ends
-from stages.errors import NoSolutionError
 from stages.geometry.arrays import Values, Vector3, dot, norm
 from stages.geometry.curves import Curve
 from stages.geometry.extremum import maximum
@@ -195,10 +194,7 @@ def _cone(spec: QuinticCone, tol: Tolerances) -> Built:
     metrics, findings = theorems.end_metrics([("0", bare[0]), ("1", bare[1])], tol)
     given = [getattr(spec, key) for key in SHAPE_KEYS]
     if None in given:
-        try:
-            best = minimax.solve(*bare, None if spec.guess is None else [float(x) for x in spec.guess])
-        except NoSolutionError as error:
-            return Built((), tuple(metrics), (*findings, Finding("minimax", str(error), fatal=True)))
+        best = minimax.solve(*bare, None if spec.guess is None else [float(x) for x in spec.guess])
         shape: tuple[Fraction, ...] = tuple(Fraction(x) for x in best.shape)
         if best.at_bound:
             findings.append(Finding("shape-at-bound", f"the minimax is at the least value allowed: {best.shape} mm"))

@@ -82,7 +82,7 @@ class _Problem:
         self.kN0 = float(start.k) * self.chord * floats(start.N)
         self.kN1 = float(end.k) * self.chord * floats(end.N)
 
-    def control_vectors(self, x: Values) -> Matrix:
+    def control_vectors(self, x: Array) -> Matrix:
         """Return the Bernstein coefficients of r', shape (5, 3)."""
         a0, a1, b0, b1 = x
         first = a0 / 5 * self.T0
@@ -92,7 +92,7 @@ class _Problem:
         middle = self.span - 2 * last - before - 2 * first - second
         return 5.0 * np.stack([first, first + second, middle, last + before, last])
 
-    def gradients(self, x: Values) -> Array:
+    def gradients(self, x: Array) -> Array:
         """Return d(control vectors)/dx, shape (4, 5, 3)."""
         a0, a1 = x[:2]
         zero = np.zeros(3)
@@ -106,22 +106,22 @@ class _Problem:
         ]
         return 5.0 * np.array(rows)
 
-    def squared_speed(self, x: Values, v: Values) -> Values:
+    def squared_speed(self, x: Array, v: Values) -> Values:
         """Return |r'(v)|^2 in units of the chord."""
         values: Values = (bernstein_sum(self.control_vectors(x), v) ** 2).sum(axis=1)
         return values
 
-    def slack_gradient(self, x: Values, v: Values) -> Matrix:
+    def slack_gradient(self, x: Array, v: Values) -> Matrix:
         """Return the gradient of t - |r'(v)|^2 by (x, t), shape (n, 5)."""
         speed = bernstein_sum(self.control_vectors(x), v)
         columns = [-2.0 * (speed * bernstein_sum(g, v)).sum(axis=1) for g in self.gradients(x)]
         return np.stack([*columns, np.ones(v.size)], axis=1)
 
-    def peaks(self, x: Values) -> Values:
+    def peaks(self, x: Array) -> Values:
         """Return the ends and every stationary v of |r'(v)|^2 in [0, 1]: roots of its derivative, degree 7."""
         return stationary(lambda v: self.squared_speed(x, v), degree=8)
 
-    def answer(self, x: Values, peaks: Values, least: float) -> Minimax:
+    def answer(self, x: Array, peaks: Values, least: float) -> Minimax:
         """Return the solution in mm."""
         speeds = np.sqrt(self.squared_speed(x, peaks))
         top = float(speeds.max())

@@ -100,16 +100,18 @@ def _reached(end: End) -> float:
 
 
 def _curvature_findings(ends: Sequence[tuple[str, End]]) -> list[Finding]:
-    return [
-        Finding(
-            "end-curvature",
-            f"at end {where} the curvature is {_reached(end):.5g} per mm, asked {float(end.k):.5g}: "
-            f"T.N = {float(dot(floats(end.T), floats(end.N))):.4g}, and only a normal across the tangent reaches k",
-            where={"end": where},
-        )
-        for where, end in ends
-        if _curvature_error(end) > CURVATURE_WORTH_SAYING
-    ]
+    """Say once where the end curvature is not the one asked for: the worst end, and how many."""
+    errors = [(_curvature_error(end), where, end) for where, end in ends]
+    off = [item for item in errors if item[0] > CURVATURE_WORTH_SAYING]
+    if not off:
+        return []
+    _, where, end = max(off, key=lambda item: item[0])
+    ends_text = "at 1 end" if len(off) == 1 else f"at {len(off)} ends"
+    message = (
+        f"{ends_text} the normal is not across the tangent, so that the curvature is not the one asked for; "
+        f"worst: {_reached(end):.5g} instead of {float(end.k):.5g} per mm, T.N = {float(dot(floats(end.T), floats(end.N))):.4g}"
+    )
+    return [Finding("end-curvature", message, where={"end": where})]
 
 
 CURVATURE_WORTH_SAYING = 1e-3

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.errors import NoSolutionError
 from stages.geometry import arcpath
 from stages.geometry.arrays import Points2
 from stages.geometry.development import Development, develop
@@ -51,6 +50,7 @@ def unroll(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPattern | N
     """Return the flat pattern in its own frame, or None with the reason.
 
     Positions are within 1e-12 of the size of the exact development; the contour's lines and arcs within `tol.chord_mm`.
+    Raises NoSolutionError where the quadrature does not resolve, or the arcs do not keep the chord.
     """
     if isinstance(certificate.surface, Plate):
         return flatten(certificate.surface, tol)
@@ -59,11 +59,8 @@ def unroll(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPattern | N
 
 def _strip(surface: RuledSurface, reached: Class, tol: Tolerances) -> Outcome[FlatPattern | None]:
     name = surface.part.name
-    try:
-        development = develop(surface.patches)
-        outer = outline.contour(outline.edges(development), tol.chord_mm, name)
-    except NoSolutionError as error:
-        return Outcome(None, StageReport("unroll", name, (), (Finding("unroll", str(error), fatal=True),)))
+    development = develop(surface.patches)
+    outer = outline.contour(outline.edges(development), tol.chord_mm, name)
     nodes = [measure.at_nodes(piece) for piece in development.pieces]
     corners = outline.corners(development)
     metrics, sides = _metrics(surface, development, nodes, corners, tol)

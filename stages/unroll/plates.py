@@ -4,7 +4,6 @@ from typing import Literal
 
 import numpy as np
 
-from stages.errors import NoSolutionError
 from stages.geometry import arcpath, contours
 from stages.geometry.arrays import Array
 from stages.model.pattern import Contour, FlatPattern
@@ -23,11 +22,8 @@ def rotations(asked: Literal["free"] | tuple[Angle, ...] | None) -> tuple[float,
 def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
     """Return the plate as a pattern in its own frame."""
     spec, material = plate.part.spec, plate.part.material
-    try:
-        outer = outline.contour(plate.outline, tol.chord_mm, spec.name)
-        inner = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i + 1}") for i, hole in enumerate(plate.holes))
-    except NoSolutionError as error:
-        return Outcome(None, StageReport("unroll", spec.name, (), (Finding("unroll", str(error), fatal=True),)))
+    outer = outline.contour(plate.outline, tol.chord_mm, spec.name)
+    inner = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i + 1}") for i, hole in enumerate(plate.holes))
     overlap = sum(outline.overlap(contour.path, tol.chord_mm) for contour in (outer, *inner))
     metrics = _metrics(overlap, tol)
     findings = _crossing_findings(metrics[-1]) or _hole_findings(outer, inner, tol)

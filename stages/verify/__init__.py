@@ -12,7 +12,7 @@ import numpy as np
 
 from stages.errors import NoSolutionError
 from stages.geometry.ruled import RuledPatch
-from stages.model.report import Finding, Metric, Outcome, StageReport
+from stages.model.report import Finding, Metric, Outcome, StageReport, Where
 from stages.model.surface import Certificate, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
 from stages.verify import sampled
@@ -80,7 +80,7 @@ def _warp(warps: list[Extreme], proofs: list[Certified | None], limit: float) ->
         return Metric("max_warp_deg", worst.value * DEG, "deg", "sampled", limit, worst.where), False
     bounds = [(proof, extreme) for proof, extreme in zip(proofs, warps, strict=True) if proof is not None]
     proof, extreme = max(bounds, key=lambda pair: pair[0].warp_rad)
-    where = extreme.where if proof.where is None else {"v": extreme.piece + proof.where}
+    where: Where = extreme.where if proof.where is None else {"v": extreme.piece + proof.where}
     return Metric("max_warp_deg", proof.warp_rad * DEG, "deg", "proved", limit, where), True
 
 

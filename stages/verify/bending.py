@@ -27,15 +27,13 @@ def smallest_radius(surface: RuledSurface) -> tuple[Metric, list[Finding]]:
     middle = 1.0 / worst.value
     inside = max(middle - (material.thickness_mm or 0.0) / 2.0, 0.0)
     metric = Metric("min_bend_radius_mm", inside, "mm", "sampled", None, worst.where)
-    return metric, [*_radius_findings(inside, material, worst.where), *_strain_findings(middle, material, worst.where)]
+    findings = [*_radius_findings(inside, material, worst.where), *_strain_findings(middle, material, worst.where)]
+    return metric, [*findings, *_unchecked(material)]
 
 
 def _radius_findings(inside: float, material: Material, where: Where) -> list[Finding]:
     least = material.bend_radius_min_mm
-    if least is None:
-        message = "no smallest bend radius is known for the material: the radius is measured, not checked"
-        return [Finding("bend-radius-not-checked", message)]
-    if inside >= least:
+    if least is None or inside >= least:
         return []
     message = f"bends to an inside radius of {inside:.4g} mm, the material allows {least:.4g} mm"
     return [Finding("bend-radius", message, True, where)]
@@ -43,10 +41,23 @@ def _radius_findings(inside: float, material: Material, where: Where) -> list[Fi
 
 def _strain_findings(middle: float, material: Material, where: Where) -> list[Finding]:
     if material.max_strain is None or material.thickness_mm is None:
-        message = "no largest strain or no thickness is known for the material: the outer fibre is not checked"
-        return [Finding("bend-strain-not-checked", message)]
+        return []
     strain = material.thickness_mm / (2.0 * middle) if middle > 0.0 else float("inf")
     if strain <= material.max_strain:
         return []
     message = f"the outer fibre stretches by {strain:.3%}, the material allows {material.max_strain:.3%}"
     return [Finding("bend-strain", message, True, where)]
+
+
+def _unchecked(material: Material) -> list[Finding]:
+    """Say which limits of the material are not known, and so not checked."""
+    known = {
+        "smallest bend radius": material.bend_radius_min_mm,
+        "largest strain": material.max_strain,
+        "thickness": material.thickness_mm,
+    }
+    missing = [name for name, value in known.items() if value is None]
+    if not missing:
+        return []
+    message = f"bending is measured but not fully checked: the material has no {', no '.join(missing)}"
+    return [Finding("bending-not-checked", message)]

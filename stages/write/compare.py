@@ -69,7 +69,7 @@ def compared(back: ReadFile, drawing: Drawing, patterns: Mapping[str, FlatPatter
     )
     figures = () if findings else tuple(_figures(paths, drawing.items, patterns))
     if shortest < LEAST_PIECE_MM:
-        text = f"{drawing.path}: an edge gives a piece of {shortest:.3g} mm; controllers want {LEAST_PIECE_MM} mm"
+        text = f"a piece of {shortest:.3g} mm; controllers want {LEAST_PIECE_MM} mm"
         findings += (Finding("short-piece", text, where={"file": drawing.path}),)
     return Comparison(figures, findings, min(shortest * SHORTER, LEAST_PIECE_MM))
 

@@ -80,7 +80,7 @@ def count(png: bytes, colour: str) -> int:
     return int((pixels(png) == rgb).all(axis=2).sum())
 
 
-@pytest.mark.parametrize("kind", [FRUSTUM, CONE, PIPE, SLENDER, PLATE, FOLDED], ids=lambda kind: str(kind["kind"]))
+@pytest.mark.parametrize("kind", [CONE, PIPE, SLENDER, PLATE, FOLDED], ids=lambda kind: str(kind["kind"]))
 def test_every_kind_of_part_is_drawn_at_full_size(kind: Mapping[str, object]) -> None:
     surface, pattern = made(kind)
     assert pixels(part_picture(surface, pattern, ["a note"])).shape == (726, 1320, 3)
@@ -102,17 +102,18 @@ def test_the_users_own_settings_change_nothing() -> None:
         assert part_picture(*made(PLATE), []) == plain
 
 
-@pytest.mark.parametrize("change", ["quantity", "name", "note", "class", "mark", "shape"])
-def test_a_difference_in_the_part_is_seen(change: str) -> None:
-    before = part_picture(*made(FRUSTUM), ["note"], None, "exact")
-    keys: dict[str, dict[str, object]] = {
-        "quantity": {"quantity": 2},
-        "name": {"name": "other"},
-        "mark": {"mark": [{"kind": "rulings", "count": 3}]},
-    }
-    built = made(FRUSTUM | ({"height": 41} if change == "shape" else {}), **keys.get(change, {}))
-    notes, reached = ["other" if change == "note" else "note"], "metal" if change == "class" else "exact"
-    assert part_picture(*built, notes, None, reached) != before
+@lru_cache
+def drawn(height: int, name: str, note: str, reached: str, marks: int = 0) -> bytes:
+    mark = [{"kind": "rulings", "count": marks}] if marks else []
+    return part_picture(*made(FRUSTUM | {"height": height}, name, mark=mark), [note], None, reached)
+
+
+CHANGES = ((41, "a", "b", "c"), (40, "x", "b", "c"), (40, "a", "x", "c"), (40, "a", "b", "x"), (40, "a", "b", "c", 3))
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=("shape", "name", "note", "class", "mark"))
+def test_a_difference_in_the_part_is_seen(change: tuple[int, str, str, str]) -> None:
+    assert drawn(*change) != drawn(40, "a", "b", "c")
 
 
 def test_a_rejected_part_shows_its_worst_ruling_and_says_so() -> None:
@@ -136,7 +137,7 @@ def test_the_edges_have_one_colour_in_both_views() -> None:
     assert all(count(image, colour) > 200 for colour in (page.BLUE, page.VERMILLION, page.GREEN))
 
 
-@pytest.mark.parametrize("name", ["$x_^{", "Überlänge 日本 \N{SNOWMAN}", "line\nbreak\t\x07", "n" * 80, "100 % $5$"])
+@pytest.mark.parametrize("name", ["$x_^{", "Überlänge 日本 \N{SNOWMAN}", "line\nbreak\t\x07", "100 % $5$"])
 def test_any_name_is_written_as_it_is(name: str) -> None:
     surface, pattern = made(PLATE, name)
     layout = SheetLayout(Sheet(name, 400.0, 300.0), 1, (Placement(name, 1, Rigid2()),), 0.5)
@@ -144,19 +145,15 @@ def test_any_name_is_written_as_it_is(name: str) -> None:
     sheet_picture(layout, {name: pattern})
 
 
-def test_signs_without_a_shape_become_boxes() -> None:
+def test_signs_without_a_shape_become_boxes_and_long_names_keep_their_ends() -> None:
     assert page.shown("a日\nü$") == f"a{page.BOX_SIGN} ü$"
+    assert page.shortened("left-hand-side-panel-42", 11) == "left-…el-42"
 
 
 def test_notes_that_do_not_fit_are_counted() -> None:
     lines = page.wrapped([f"note {i}" for i in range(30)], 40, 5)
     assert len(lines) == 5
     assert "26 more" in lines[-1]
-
-
-def test_long_names_keep_their_ends() -> None:
-    assert page.shortened("left-hand-side-panel-42", 11) == "left-…el-42"
-    assert page.shortened("short", 11) == "short"
 
 
 def test_lengths_and_areas_of_a_frustum_are_those_of_the_closed_form() -> None:
@@ -243,11 +240,7 @@ def test_a_round_hole_is_named_by_its_diameter() -> None:
     _, pattern = made(PLATE)
     assert hole_text(pattern.inner[0].path) == "⌀80.00"
     assert hole_text(pattern.outer.path) == "300.00 × 200.00"
-
-
-@pytest.mark.parametrize(("mm", "words"), [(0.5, "0.500"), (78.2137, "78.21"), (10000.0, "10000.0")])
-def test_lengths_are_written_as_they_can_be_measured(mm: float, words: str) -> None:
-    assert page.length_text(mm) == words
+    assert [page.length_text(mm) for mm in (0.5, 1e4)] == ["0.500", "10000.0"]
 
 
 def many(pattern: FlatPattern, copies: int) -> SheetLayout:
@@ -301,7 +294,7 @@ def test_the_offcut_is_the_strip_beyond_the_last_part() -> None:
 
 def test_more_names_than_rows_are_counted_in_the_table() -> None:
     _, pattern = made(PLATE)
-    names = [f"part-{i}" for i in range(60)]
+    names = [f"part-{i}" for i in range(20)]
     placed = tuple(Placement(name, 1, Rigid2(310.0 * i, 0.0)) for i, name in enumerate(names))
-    shown = sheet_picture(SheetLayout(Sheet("s", 19000.0, 250.0), 1, placed, 0.7), dict.fromkeys(names, pattern))
+    shown = sheet_picture(SheetLayout(Sheet("s", 6200.0, 250.0), 1, placed, 0.7), dict.fromkeys(names, pattern))
     assert all(count(shown, fill) > 0 for fill in FILLS)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from stages.construct.quintic import End, cone_over, directrix, length_exact, patch_between, unit_exact
 from stages.construct.theorems import coefficients_a, coefficients_c
 from stages.geometry.ruled import RuledPatch
-from tests.parts import EXAMPLE_2_CYLINDER, EXAMPLE_2_PRINTED, patches
+from tests.parts import EXAMPLE_2_CYLINDER, QUINTIC_TANGENT, patches
 from tests.strategies import decimals, points
 
 Vec = tuple[Fraction, ...]
@@ -139,8 +139,8 @@ def test_the_explicit_first_and_last_coefficients_are_the_papers(ends: tuple[Dat
 
 
 def test_the_misprint_in_c_1_is_not_followed() -> None:
-    """Example 2: with the printed 4 (Y0 x X1) the sum is another one."""
-    patch = patches(EXAMPLE_2_PRINTED)[0]
+    """With the printed 4 (Y0 x X1) the sum is another one."""
+    patch = patches(QUINTIC_TANGENT)[0]
     found = coefficients_c(patch)[1]
     b, c = (curve.exact for curve in (patch.c0, patch.c1))
     X = [combined((1, q), (-1, p)) for p, q in zip(b, c, strict=True)]
