@@ -107,9 +107,10 @@ def _curvature_findings(ends: Sequence[tuple[str, End]]) -> list[Finding]:
         return []
     _, where, end = max(off, key=lambda item: item[0])
     ends_text = "at 1 end" if len(off) == 1 else f"at {len(off)} ends"
+    turned = float(dot(floats(end.T), floats(end.N)))
     message = (
         f"{ends_text} the normal is not across the tangent, so that the curvature is not the one asked for; "
-        f"worst: {_reached(end):.5g} instead of {float(end.k):.5g} per mm, T.N = {float(dot(floats(end.T), floats(end.N))):.4g}"
+        f"worst: {_reached(end):.5g} instead of {float(end.k):.5g} per mm, T.N = {turned:.4g}"
     )
     return [Finding("end-curvature", message, where={"end": where})]
 
