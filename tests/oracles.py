@@ -59,7 +59,9 @@ def bezier(points: Sequence[Sequence[object]]) -> Space:
     return lambda v: (value(rows, v), value(first, v), value(second, v))
 
 
-def turning(centre: Sequence[object], u: Sequence[object], v: Sequence[object], w: Sequence[object], sweep: mpf) -> Space:
+def turning(
+    centre: Sequence[object], u: Sequence[object], v: Sequence[object], w: Sequence[object], sweep: mpf
+) -> Space:
     """Return centre + cos(a) u + sin(a) v + a w, a = sweep t: circles, ellipses, helices."""
     C, U, V, W = (tuple(exact(x) for x in vector) for vector in (centre, u, v, w))
 

@@ -273,7 +273,8 @@ def _least_step(miss: Array, chord: Plane, normal: Plane, free_move: Array, free
     diagonal = a**2 * free_move[:-1] + b**2 * free_move[1:] + free_turn[:-1] + free_turn[1:]
     upper = np.zeros_like(diagonal)
     upper[1:] = b[:-1] * a[1:] * free_move[1:-1] + free_turn[1:-1]
-    weight = -solveh_banded(np.stack([upper, diagonal]), miss)
+    # one equation is no band: the solver refuses a matrix without neighbours
+    weight = -solveh_banded(np.stack([upper, diagonal]), miss) if miss.size > 1 else -miss / diagonal
     left, right = np.append(weight, 0.0), np.insert(weight, 0, 0.0)
     move = free_move * (np.append(a, 0.0) * left + np.insert(b, 0, 0.0) * right)
     return move, -free_turn * (left + right)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.geometry.arrays import Array, Values, Vector2, norm
+from stages.geometry.arrays import Array, Values, Vector2, cross2, norm
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.quadrature import integral
 
@@ -15,31 +15,37 @@ def area(edges: Sequence[PlaneCurve]) -> float:
     About the first point, so that an outline far from the origin loses no digits.
     """
     origin = edges[0].at(np.array([0.0]))[0]
-    return sum((_green(edge, origin) for edge in edges), 0.0)
+    far, wide = _extent(edges)
+    return sum((_green(edge, origin, far * wide) for edge in edges), 0.0)
 
 
 def length(edges: Sequence[PlaneCurve]) -> float:
     """Return the length, mm; some 1e-14 of the scale."""
-    return sum((_arc_length(edge) for edge in edges), 0.0)
+    _, wide = _extent(edges)
+    return sum((_arc_length(edge, wide) for edge in edges), 0.0)
 
 
-def _green(edge: PlaneCurve, origin: Vector2) -> float:
-    """Return half the integral of x dy - y dx along an edge, mm2.
+def _extent(edges: Sequence[PlaneCurve]) -> tuple[float, float]:
+    """Return how far the contour reaches from the origin and from its first point, mm: what its rounding scales with.
 
-    x dy and y dx apart: their difference has no scale of its own on an edge that points at the origin.  The third
-    channel says how large the coordinates are that were rounded.
+    An edge of no length (an apex), or one that points at the first point, has no scale of its own.
     """
-    far = float(norm(origin))
+    points = np.concatenate([edge.at(np.array([0.0, 0.5, 1.0])) for edge in edges])
+    return float(norm(points).max()), float(norm(points - points[0]).max())
+
+
+def _green(edge: PlaneCurve, origin: Vector2, scale: float) -> float:
+    """Return half the integral of x dy - y dx along an edge, mm2."""
 
     def sample(t: Values) -> Array:
-        arm, slope = edge.at(t) - origin, edge.derivative(t)
-        rounded = np.full_like(t, far * float(norm(slope).max()))
-        return np.stack([arm[:, 0] * slope[:, 1], arm[:, 1] * slope[:, 0], rounded], axis=1)
+        swept = cross2(edge.at(t) - origin, edge.derivative(t)) / 2.0
+        return np.stack([swept, np.full_like(t, scale)], axis=1)
 
-    forth, back, _ = integral(sample, "area of a contour")
-    return float(forth - back) / 2.0
+    return float(integral(sample, "area of a contour")[0])
 
 
-def _arc_length(edge: PlaneCurve) -> float:
-    total = integral(lambda t: norm(edge.derivative(t))[:, None], "length of a contour")
-    return float(total[0])
+def _arc_length(edge: PlaneCurve, scale: float) -> float:
+    def sample(t: Values) -> Array:
+        return np.stack([norm(edge.derivative(t)), np.full_like(t, scale)], axis=1)
+
+    return float(integral(sample, "length of a contour")[0])

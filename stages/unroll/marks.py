@@ -33,9 +33,11 @@ def ruling_marks(development: Development, spec: MarkSpec) -> tuple[Mark, ...]:
 
 def _steps(total: float, spec: MarkSpec) -> int:
     """Return into how many equal turns the total is divided so that none exceeds `max_angle`."""
-    return max(math.ceil(total / math.radians(float(spec.max_angle or 1))), 1)
+    return max(math.ceil(total / math.radians(float(spec.max_angle or 1)) * (1.0 - SUMMED)), 1)
 
 
+SUMMED = 1e-9
+"""What the sum of the turns may be over a whole number of angles by rounding alone, as a share."""
 FLAT = 1e-9
 """A part whose normal turns by less, in rad, is flat: its lines are spaced by the parameter."""
 

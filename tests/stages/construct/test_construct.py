@@ -67,7 +67,7 @@ def test_the_metrics_of_example_2_are_the_departures_of_its_printed_data() -> No
     assert_near(made.value("construct", "normal_tangent_dot"), 0.4754, bound=1e-15, why="one rounding")
     error = 1.0 - 0.8798 / t**3
     assert_near(made.value("construct", "end_curvature_error"), error, bound=1e-14, why="three roundings")
-    assert made.codes("construct") == ["end-curvature"] * 4
+    assert set(made.codes("construct")) == {"end-curvature"}
     assert made.metric("construct", "tangent_norm_error").limit == 1e-3
 
 

@@ -95,7 +95,9 @@ def test_an_interpolation_goes_through_its_points_with_two_continuous_derivative
     ends, starts = found[6::7], found[7::7]
     joins = [*zip(ends, starts, strict=False), *([(found[-1], found[0])] if closed else [])]
     for a, b in joins:
-        assert_near(a, b, bound=1e-10, why="second derivatives of up to 1e3, a tridiagonal system solved to 1e-13 of it")
+        assert_near(
+            a, b, bound=1e-10, why="second derivatives of up to 1e3, a tridiagonal system solved to 1e-13 of it"
+        )
 
 
 def test_an_interpolation_is_the_one_cubic_where_four_points_lie_on_one() -> None:
@@ -107,7 +109,9 @@ def test_an_interpolation_is_the_one_cubic_where_four_points_lie_on_one() -> Non
         assert_near(other, third[0], bound=1e-10, why="third derivatives of up to 1e3")
 
 
-@pytest.mark.parametrize("normal", [(0, 0, 1), (0, 0, -1), (1, 2, 3), (0.01, 0.01, 1), (0.02, 0, 1), (1, 0, 0), (0, 1, 0)])
+@pytest.mark.parametrize(
+    "normal", [(0, 0, 1), (0, 0, -1), (1, 2, 3), (0.01, 0.01, 1), (0.02, 0, 1), (1, 0, 0), (0, 1, 0)]
+)
 def test_the_arbitrary_axis_rule_is_that_of_the_dxf_reference(normal: tuple[float, float, float]) -> None:
     n = np.array(normal, dtype=float)
     n /= norm(n)
@@ -152,7 +156,15 @@ def test_a_polyline_and_a_chain_share_the_parameter_evenly() -> None:
 
 
 def test_the_gap_of_a_chain_is_its_widest() -> None:
-    link = read({"chain": [{"line": [[0, 0, 0], [1, 0, 0]]}, {"line": [[1, 0, 0.5], [2, 0, 0]]}, {"line": [[2, 0, 0], [3, 0, 0]]}]})
+    link = read(
+        {
+            "chain": [
+                {"line": [[0, 0, 0], [1, 0, 0]]},
+                {"line": [[1, 0, 0.5], [2, 0, 0]]},
+                {"line": [[2, 0, 0], [3, 0, 0]]},
+            ]
+        }
+    )
     assert largest_gap(link) == 0.5
 
 

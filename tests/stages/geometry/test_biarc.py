@@ -207,3 +207,13 @@ def test_a_curve_and_its_reverse_take_about_as_many_arcs(curve: Formula) -> None
     reverse = Formula(lambda t: curve.place(1.0 - t), lambda t: -curve.slope(1.0 - t))
     back = arcpath.piece_count(fit(reverse, accuracy=0.05))
     assert abs(there - back) <= 1 + there // 6
+
+
+def test_an_edge_that_one_arc_follows_within_the_tolerance_becomes_one_arc() -> None:
+    # the parabola y = x^2 / 1000 on [-10, 10] departs from its circle by x^4 / (4 * 500^3) < 3e-5 mm
+    parabola = Formula(
+        lambda t: (20 * t - 10) + 1j * (20 * t - 10) ** 2 / 1000, lambda t: 20 + 40j * (20 * t - 10) / 1000
+    )
+    path = fit(parabola, accuracy=0.01)
+    assert path.bulges.size == 2  # one piece of an open path has two vertices
+    assert path.bulges[0] != 0.0

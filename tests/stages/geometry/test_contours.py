@@ -46,4 +46,6 @@ def test_a_developed_edge_has_the_length_of_its_curve() -> None:
             edge = DevelopedEdge(piece, u, reverse)
             assert_relative([length([edge])], [2.0 * pi * radius], bound=1e-13, why="closed form")
             ends = edge.at(np.array([0.0, 1.0]))
-            assert_near(DevelopedEdge(piece, u, not reverse).at(np.array([1.0, 0.0])), ends, bound=0.0, why="same points")
+            assert_near(
+                DevelopedEdge(piece, u, not reverse).at(np.array([1.0, 0.0])), ends, bound=0.0, why="same points"
+            )
