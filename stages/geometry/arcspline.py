@@ -40,8 +40,9 @@ TRIAL_POINTS = 24
 NEARLY_THERE, FULL = 1.1, 0.93
 """The end is tried if it is so little beyond a guess; an arc that uses so much of its tolerance will do."""
 
-TRIALS, NEWTON_STEPS, ROUNDS, PATIENCE = 12, 12, 40, 3
-"""PATIENCE: rounds without a change after which the arcs in question are as short as they may be."""
+TRIALS, NEWTON_STEPS, ROUNDS, PATIENCE = 12, 12, 40, 10
+"""PATIENCE: rounds without a change, each at half the tolerance, after which the arcs are as short as they may be.  An
+arc whose end direction is kept departs further than the free one that the breaks were chosen for, by up to 8 times."""
 
 MET = 1e-13
 """Joints that turn by less (rad) are smooth to rounding."""
@@ -98,7 +99,11 @@ def chain(stretch: Stretch, *, accuracy: float, least_piece: float) -> Chain:
     stalled = 0
     for _ in range(ROUNDS):
         before, breaks = breaks, _breaks(stretch, place, accuracy * share, least_piece)
-        stalled = stalled + 1 if np.array_equal(before, breaks) else 0
+        if np.array_equal(before, breaks):
+            stalled += 1
+            share *= 0.5
+        else:
+            stalled = 0
         if stalled == PATIENCE:
             break
         found = _joined(stretch, place, breaks, accuracy)

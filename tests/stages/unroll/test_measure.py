@@ -34,9 +34,7 @@ def distortion(made: Development) -> float:
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_an_honest_map_shows_nothing(name: str) -> None:
-    assert_near(
-        distortion(develop(patches(SHAPES[name]))), 0.0, bound=SEEN / 5, why="positions to 1e-14, differentiated"
-    )
+    assert_near(distortion(develop(patches(SHAPES[name]))), 0.0, bound=SEEN / 1.5, why="1e-14 over 1/64 and 1e-3")
 
 
 @pytest.mark.parametrize("name", ["tangent surface", "aumann", "oblique cone"])
