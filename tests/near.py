@@ -1,4 +1,4 @@
-"""One comparison of numbers for all tests: the bound and its reason are part of the call, a failure shows both sides."""
+"""One comparison of numbers for all tests: bound and reason are part of the call, a failure shows both sides."""
 
 from collections.abc import Iterable
 

@@ -1,12 +1,13 @@
 """Lengths, areas and flat positions at 40 digits, by other formulas than the program's.
 
 The flat map here turns the tangent of a directrix by its geodesic curvature,  theta' = (c' x c'') . n / |c'|^2,  and
-lays the ruling at the angle it has with that tangent; the program turns the rulings and never sees c''.  Antiderivatives
-are Chebyshev series on panels.  Divides by |c'|: not for a directrix that is an apex.
+lays the ruling at the angle it has with that tangent; the program turns the rulings and never sees c''.
+Antiderivatives are Chebyshev series on panels.  Divides by |c'|: not for a directrix that is an apex.
 """
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from itertools import pairwise
 
 from mpmath import mp, mpf
 
@@ -47,11 +48,11 @@ def bezier(points: Sequence[Sequence[object]]) -> Space:
 
     def value(control: list[Vec], v: mpf) -> Vec:
         while len(control) > 1:
-            control = [add(a, add(b, a, -1), v) for a, b in zip(control, control[1:], strict=False)]
+            control = [add(a, add(b, a, -1), v) for a, b in pairwise(control)]
         return control[0]
 
     def slopes(control: list[Vec], degree: int) -> list[Vec]:
-        made = [add(b, a, -1) for a, b in zip(control, control[1:], strict=False)]
+        made = [add(b, a, -1) for a, b in pairwise(control)]
         return [(degree * x, degree * y, degree * z) for x, y, z in made] or [(mpf(0),) * 3]
 
     first = slopes(rows, n)

@@ -1,7 +1,8 @@
-"""Parts for tests, written as in a job file after its units are resolved, and the way through the first three stages."""
+"""Parts for tests, written as in a job file with its units resolved, and the way through the first three stages."""
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 import msgspec
 
@@ -17,6 +18,7 @@ from stages.unroll import unroll
 from stages.verify import verify
 
 Table = dict[str, object]
+DEFAULT, UNKNOWN = Tolerances(), Material()
 
 
 def number(kind: type, value: object) -> object:
@@ -24,9 +26,19 @@ def number(kind: type, value: object) -> object:
     return kind(Fraction(str(value)))
 
 
-def part(surface: Table, material: Material = Material(), **keys: object) -> Part:
+def read(surface: Table, **keys: object) -> PartSpec:
+    """Return a part's specification, its rules unchecked."""
+    return msgspec.convert({"name": "part", "surface": surface} | keys, PartSpec, dec_hook=number)
+
+
+def troubles(surface: Table) -> list[str]:
+    """Return the rules of the job file that a surface breaks."""
+    return [trouble.message for trouble in read(surface).surface.troubles()]
+
+
+def part(surface: Table, material: Material = UNKNOWN, **keys: object) -> Part:
     """Return the part with this surface; its rules must hold."""
-    spec = msgspec.convert({"name": "part", "surface": surface} | keys, PartSpec, dec_hook=number)
+    spec = read(surface, **keys)
     assert not [*spec.surface.troubles()], "the test's own part breaks a rule of the job file"
     return Part(spec, material)
 
@@ -64,7 +76,7 @@ class Passage:
         return figures
 
 
-def passage(surface: Table, tol: Tolerances = Tolerances(), material: Material = Material(), **keys: object) -> Passage:
+def passage(surface: Table, tol: Tolerances = DEFAULT, material: Material = UNKNOWN, **keys: object) -> Passage:
     """Return what construct, verify and unroll say of a part."""
     made = construct(part(surface, material, **keys), tol)
     reports = {"construct": made.report}
@@ -143,7 +155,7 @@ def aumann(points: list[list[object]], first: list[object], lam: str, mu: str) -
     c = [[Fraction(str(x)) for x in point] for point in points]
     d = [[Fraction(str(x)) for x in first]]
     L, M = Fraction(lam), Fraction(mu)
-    for a, b in zip(c, c[1:], strict=False):
+    for a, b in pairwise(c):
         d.append([((1 - L) * x + L * y - (1 - M) * z) / M for x, y, z in zip(a, b, d[-1], strict=True)])
     rows = [[[str(x) for x in point] for point in curve] for curve in (c, d)]
     return {"kind": "ruled", "c0": {"bezier": rows[0]}, "c1": {"bezier": rows[1]}}

@@ -1,16 +1,16 @@
 """Parts at the edge of what has a shape: no NaN, no traceback; a product, or a report that says why not.
 
-Named cases first, then random specifications of every kind.  Warnings of numpy are errors here.
+Named cases first, then random specifications of every kind.  The project's settings make numpy's warnings errors.
 """
 
 import math
-import warnings
 
 import pytest
-from hypothesis import HealthCheck, example, given, settings
+from hypothesis import HealthCheck, Phase, assume, example, given, settings
 
+from stages.errors import NoSolutionError
 from stages.model.tolerances import Tolerances
-from tests.parts import EXAMPLE_1, QUINTIC_TANGENT, RIGHT_FRUSTUM, Passage, Table, passage
+from tests.parts import EXAMPLE_1, QUINTIC_TANGENT, RIGHT_FRUSTUM, Passage, Table, passage, troubles
 from tests.strategies import quintic_cone, surfaces
 
 ARC: Table = {"arc": {"center": [0, 0, 0], "radius": 10, "start": 10, "end": 100}}
@@ -46,13 +46,16 @@ CASES: dict[str, tuple[Table, str | None]] = {
     "two-piece polylines": (lines([[0, 0, 0], [1, 0, 0], [2, 1, 0]], [[0, 0, 1], [1, 0, 1], [2, 1, 1]]), None),
     "a polyline that doubles back": (
         lines([[0, 0, 0], [1, 0, 0], [0.5, 0, 0]], [[0, 0, 1], [1, 0, 1], [0.5, 0, 1]]), None),
-    "profile with an inflection": (cylinder({"bezier": [[0, 0, 0], [1, 2, 0], [2, -2, 0], [3, 0, 0]]}, [0, 0, 1]), None),
+    "profile with an inflection": (
+        cylinder({"bezier": [[0, 0, 0], [1, 2, 0], [2, -2, 0], [3, 0, 0]]}, [0, 0, 1]), None),
     "profile with a cusp": (cylinder({"bezier": [[0, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 0]]}, [0, 0, 1]), "verify"),
-    "profile that starts at rest": (cylinder({"bezier": [[0, 0, 0], [0, 0, 0], [1, 1, 0], [2, 0, 0]]}, [0, 0, 1]), None),
+    "profile that starts at rest": (
+        cylinder({"bezier": [[0, 0, 0], [0, 0, 0], [1, 1, 0], [2, 0, 0]]}, [0, 0, 1]), None),
     "straight profile that stops and goes on": (
         cylinder({"bezier": [[-1, 0, 0], [1, 0, 0], [-1, 0, 0], [1, 0, 0]]}, [0, 0, 1]), "verify"),
     "direction along a tangent inside": (cylinder(CIRCLE, [1, 0, 0]), "verify"),
-    "direction along a tangent at the end": (cylinder({"bezier": [[0, 0, 0], [1, 1, 0], [2, 0, 0.5]]}, [1, 1, 0]), None),
+    "direction along a tangent at the end": (
+        cylinder({"bezier": [[0, 0, 0], [1, 1, 0], [2, 0, 0.5]]}, [1, 1, 0]), None),
     "pipe cut to a point at its seam": (
         cylinder(CIRCLE, [0.3, 0.2, 1], end_plane={"point": [10, 0, 0], "normal": [1, 0, 1]}), None),
     "pipe cut through its start": (
@@ -62,7 +65,7 @@ CASES: dict[str, tuple[Table, str | None]] = {
         "verify"),
     "helicoid": (
         {"kind": "ruled", "c0": {"helix": {"radius": 10, "pitch": 5, "turns": 3}},
-         "c1": {"helix": {"radius": 5, "pitch": 5, "turns": 3}}}, "verify"),
+         "c1": {"helix": {"radius": 5, "pitch": 5, "turns": 3}}}, "unroll"),
     "far from the origin": (
         {"kind": "cone", "apex": [1000000, "2000000.2", 2],
          "directrix": {"bspline": {"degree": 2, "knots": [0, 0, 0, 1, 1, 1], "weights": [1, 2, 0.5],
@@ -101,19 +104,28 @@ def test_a_hard_part_is_made_or_refused_with_a_reason(name: str) -> None:
     assert made.refused_by == refused_by, {k: v.findings for k, v in made.reports.items()}
 
 
-SLOW = (HealthCheck.too_slow, HealthCheck.filter_too_much)
+CALM = {"deadline": None, "suppress_health_check": (HealthCheck.too_slow, HealthCheck.filter_too_much)}
+PHASES = (Phase.explicit, Phase.generate)
+"""No shrinking: a part takes up to a second, and a random one is small already."""
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=SLOW)
+def assert_sound_or_short(table: Table) -> None:
+    """Fail unless a part is made, refused with a reason, or given up with both numbers."""
+    assume(not troubles(table))
+    try:
+        assert_sound(passage(table, Tolerances(accept="leather")))
+    except NoSolutionError as error:
+        assert not error.reached <= error.wanted
+
+
+@settings(max_examples=120, phases=PHASES, **CALM)
 @given(surfaces())
 @example(QUINTIC_TANGENT)
 def test_any_part_is_made_or_refused_with_a_reason(table: Table) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert_sound(passage(table, Tolerances(accept="leather")))
+    assert_sound_or_short(table)
 
 
-@settings(max_examples=8, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=8, phases=PHASES, **CALM)
 @given(quintic_cone(given=False))
 def test_any_minimax_is_found_or_refused_with_a_reason(table: Table) -> None:
-    assert_sound(passage(table, Tolerances(accept="leather")))
+    assert_sound_or_short(table)

@@ -95,9 +95,7 @@ def test_an_interpolation_goes_through_its_points_with_two_continuous_derivative
     ends, starts = found[6::7], found[7::7]
     joins = [*zip(ends, starts, strict=False), *([(found[-1], found[0])] if closed else [])]
     for a, b in joins:
-        assert_near(
-            a, b, bound=1e-10, why="second derivatives of up to 1e3, a tridiagonal system solved to 1e-13 of it"
-        )
+        assert_near(a, b, bound=1e-10, why="second derivatives of up to 1e3, solved to 1e-13 of it")
 
 
 def test_an_interpolation_is_the_one_cubic_where_four_points_lie_on_one() -> None:

@@ -74,9 +74,7 @@ def test_a_straight_directrix_gets_even_speed_and_says_that_beta_is_at_its_bound
     """r' = P1 - P0 everywhere: alpha = 7, beta = 0, and beta must stay above 0."""
     found = solve(*line("0"))
     assert found.at_bound
-    assert_relative(
-        found.shape[:2], [7.0, 7.0], bound=1e-4, why="beta kept at 1e-4 of the chord moves alpha by as much"
-    )
+    assert_relative(found.shape[:2], [7.0, 7.0], bound=1e-4, why="beta at 1e-4 of the chord moves alpha as much")
     assert 7.0 <= found.speed_max <= 7.0 * (1.0 + 1e-4)
 
 

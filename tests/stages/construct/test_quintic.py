@@ -1,7 +1,7 @@
 """The paper's directrix (2.2) and its theorems, in exact fractions against the paper's explicit formulas."""
 
 from fractions import Fraction
-from itertools import product
+from itertools import pairwise, product
 
 import pytest
 from hypothesis import given, settings
@@ -75,8 +75,10 @@ Z_TERMS: dict[int, dict[tuple[int, int], int]] = {
 A_TERMS: dict[int, dict[tuple[int, int], int]] = {
     0: {(0, 0): 1}, 1: {(0, 1): 1, (1, 0): 4}, 2: {(0, 2): 1, (1, 1): 4, (2, 0): 6},
     3: {(0, 3): 1, (1, 2): 4, (2, 1): 6, (3, 0): 4}, 4: {(0, 4): 1, (1, 3): 4, (2, 2): 6, (3, 1): 4, (4, 0): 1},
-    5: {(0, 5): 1, (1, 4): 4, (2, 3): 6, (3, 2): 4, (4, 1): 1}, 6: {(0, 6): 1, (1, 5): 4, (2, 4): 6, (3, 3): 4, (4, 2): 1},
-    7: {(0, 7): 1, (1, 6): 4, (2, 5): 6, (3, 4): 4, (4, 3): 1}, 8: {(0, 8): 1, (1, 7): 4, (2, 6): 6, (3, 5): 4, (4, 4): 1},
+    5: {(0, 5): 1, (1, 4): 4, (2, 3): 6, (3, 2): 4, (4, 1): 1},
+    6: {(0, 6): 1, (1, 5): 4, (2, 4): 6, (3, 3): 4, (4, 2): 1},
+    7: {(0, 7): 1, (1, 6): 4, (2, 5): 6, (3, 4): 4, (4, 3): 1},
+    8: {(0, 8): 1, (1, 7): 4, (2, 6): 6, (3, 5): 4, (4, 4): 1},
     9: {(0, 9): 1, (1, 8): 4, (2, 7): 6, (3, 6): 4, (4, 5): 1}, 10: {(1, 9): 4, (2, 8): 6, (3, 7): 4, (4, 6): 1},
     11: {(2, 9): 6, (3, 8): 4, (4, 7): 1}, 12: {(3, 9): 4, (4, 8): 1}, 13: {(4, 9): 1},
 }  # fmt: skip
@@ -144,7 +146,7 @@ def test_the_misprint_in_c_1_is_not_followed() -> None:
     found = coefficients_c(patch)[1]
     b, c = (curve.exact for curve in (patch.c0, patch.c1))
     X = [combined((1, q), (-1, p)) for p, q in zip(b, c, strict=True)]
-    Y = [combined((-1, q), (1, p)) for p, q in zip(X, X[1:], strict=False)]
+    Y = [combined((-1, q), (1, p)) for p, q in pairwise(X)]
     assert found == combined((4, cross(Y[1], X[0])), (5, cross(Y[0], X[1])))
     assert found != combined((4, cross(Y[1], X[0])), (4, cross(Y[0], X[1])))
 

@@ -1,6 +1,7 @@
 """Exact polynomials: every operation against plain evaluation in fractions, at more places than the degree."""
 
 from fractions import Fraction
+from itertools import pairwise
 from math import comb
 
 from hypothesis import given, settings
@@ -32,7 +33,7 @@ PLACES = [Fraction(k, 17) for k in range(18)]
 def by_de_casteljau(coefficients: list[Fraction], v: Fraction) -> Fraction:
     row = list(coefficients)
     while len(row) > 1:
-        row = [(1 - v) * a + v * b for a, b in zip(row, row[1:], strict=False)]
+        row = [(1 - v) * a + v * b for a, b in pairwise(row)]
     return row[0]
 
 

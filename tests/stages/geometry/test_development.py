@@ -286,7 +286,7 @@ def test_parallel_rulings_stay_parallel_where_they_shrink_to_nothing() -> None:
 
 
 def test_rulings_that_turn_without_end_are_refused_with_the_number_reached() -> None:
-    folded = patches(aumann(AUMANN_POINTS, AUMANN_FIRST, "3", "-2"))[0]
+    folded = patches(aumann(AUMANN_POINTS, AUMANN_FIRST, "3", "-1.9"))[0]
     with pytest.raises(NoSolutionError, match="unrolling piece 0"):
         develop((folded,))
 

@@ -42,10 +42,7 @@ def test_cylinders_of_unlike_radius_meet_smoothly_with_a_jump_of_curvature() -> 
 def test_the_worse_end_of_the_ruling_counts_for_the_jump() -> None:
     """A cone of radius r at the foot and r/2 at the top, slant s, height h: curvature h / (r s), double at the top."""
     cone = RuledPatch(
-        *(
-            Circular(level * Z - r * X * 0 - 10.0 * X, r * X, r * Y, ZERO, 0.0, 1.0)
-            for r, level in ((10.0, 0.0), (5.0, 4.0))
-        ),
+        *(Circular(level * Z - 10.0 * X, r * X, r * Y, ZERO, 0.0, 1.0) for r, level in ((10.0, 0.0), (5.0, 4.0))),
         Circular(4.0 * Z, -5.0 * X, -5.0 * Y, ZERO, 0.0, 1.0),
     )
     same = join(part_before(cone), cone)

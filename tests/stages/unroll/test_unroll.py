@@ -166,7 +166,7 @@ def test_the_cut_contour_stays_within_its_chord() -> None:
 
 
 def test_example_2_is_strained_by_its_warp_and_of_class_metal() -> None:
-    """Rulings are kept and the middle of each is unstrained: the ends by 1 - cos of what the normal turns from there."""
+    """The middle of each ruling is unstrained, its ends by 1 - cos of what the normal turns from there."""
     found = passage(EXAMPLE_2_PRINTED, Tolerances(accept="metal"))
     assert found.refused_by is None
     half = np.radians(3.2849872165410023) / 2.0

@@ -2,6 +2,7 @@
 
 import random
 from fractions import Fraction
+from itertools import pairwise
 from math import atan2, degrees, inf, pi, sqrt
 
 import pytest
@@ -42,7 +43,7 @@ def _jet(curve: object, v: Fraction) -> tuple[list[Fraction], list[Fraction]]:
     rows = [list(point) for point in curve.exact]
     n = len(rows) - 1
     while len(rows) > 2:
-        rows = [[(1 - v) * a + v * b for a, b in zip(x, y, strict=True)] for x, y in zip(rows, rows[1:], strict=False)]
+        rows = [[(1 - v) * a + v * b for a, b in zip(x, y, strict=True)] for x, y in pairwise(rows)]
     slope = [n * (b - a) for a, b in zip(*rows, strict=True)]
     return [(1 - v) * a + v * b for a, b in zip(*rows, strict=True)], slope
 
@@ -74,7 +75,7 @@ def _aumann(rng: random.Random, degree: int) -> tuple[Rows, Rows]:
     L, M = rng.choice([(Fraction(9, 5), Fraction(23, 10)), (Fraction(-1), Fraction(-2)), (Fraction(3), Fraction(5, 2))])
     c = _curve(rng, degree)
     d = [[c[0][0], c[0][1] + 1, c[0][2] + 5]]
-    for a, b in zip(c, c[1:], strict=False):
+    for a, b in pairwise(c):
         d.append([((1 - L) * x + L * y - (1 - M) * z) / M for x, y, z in zip(a, b, d[-1], strict=True)])
     return c, d
 
