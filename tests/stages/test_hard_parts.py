@@ -118,7 +118,7 @@ def assert_sound_or_short(table: Table) -> None:
         assert not error.reached <= error.wanted
 
 
-@settings(max_examples=120, phases=PHASES, **CALM)
+@settings(max_examples=80, phases=PHASES, **CALM)
 @given(surfaces())
 @example(QUINTIC_TANGENT)
 def test_any_part_is_made_or_refused_with_a_reason(table: Table) -> None:
