@@ -29,7 +29,7 @@ CHORES: dict[str, list[list[str]]] = {
     "lint": [["-m", "ruff", "check", "."], ["-m", "ruff", "format", "--check", "."]],
     "types": [["-m", "mypy"]],
     "imports": [["-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]],
-    "bench": [["-m", "pytest", "--benchmark-only", "--benchmark-enable"]],
+    "bench": [["-m", "pytest", "-o", "addopts=", "--benchmark-only", "tests/bench"]],
 }
 
 

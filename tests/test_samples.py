@@ -34,7 +34,7 @@ def paper() -> dict[str, dict]:
 
 @pytest.fixture(scope="module")
 def hopper() -> dict:
-    report, code, files = run("hopper/job.toml")
+    report, code, _ = run("hopper/job.toml")
     assert code == 0, report
     return report
 

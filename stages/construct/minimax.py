@@ -18,9 +18,11 @@ import numpy as np
 from stages.construct.quintic import End
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, Matrix, Values, norm
-from stages.geometry.curves import Bezier, bernstein_sum, differences
+from stages.geometry.curves import Bezier, bernstein_basis, bernstein_sum, differences
 from stages.model.scalars import floats
 
+DEGREE = 4
+"""Degree of r'."""
 LEAST_SHARE = 1e-4
 """alpha and beta are kept above this share of the chord: the theorem wants them positive, the minimum may be at 0."""
 EXCHANGES = 30
@@ -48,23 +50,23 @@ def solve(start: End, end: End, guess: Sequence[float] | None = None) -> Minimax
     places = np.linspace(0.0, 1.0, 13)
     least = LEAST_SHARE
     for _ in range(EXCHANGES):
-        level = float(problem.squared_speed(x, places).max())
+        basis = bernstein_basis(DEGREE, places)
         result = minimize(
             lambda y: y[4],
-            np.append(x, level),
+            np.append(x, problem.squared_speed(x, basis).max()),
             jac=lambda _: np.array([0.0, 0.0, 0.0, 0.0, 1.0]),
             bounds=[(least, None)] * 4 + [(0.0, None)],
             constraints={
                 "type": "ineq",
-                "fun": lambda y, at=places: y[4] - problem.squared_speed(y[:4], at),
-                "jac": lambda y, at=places: problem.slack_gradient(y[:4], at),
+                "fun": lambda y, at=basis: y[4] - problem.squared_speed(y[:4], at),
+                "jac": lambda y, at=basis: problem.slack_gradient(y[:4], at),
             },
             method="SLSQP",
             options={"ftol": 1e-15, "maxiter": 200},
         )
         x, level = np.maximum(result.x[:4], least), float(result.x[4])
         peaks = problem.peaks(x)
-        reached = float(problem.squared_speed(x, peaks).max())
+        reached = float(problem.squared_speed(x, bernstein_basis(DEGREE, peaks)).max())
         if reached <= level * (1.0 + GAP):
             return problem.answer(x, peaks, least)
         places = np.union1d(places, peaks)
@@ -106,24 +108,24 @@ class _Problem:
         ]
         return 5.0 * np.array(rows)
 
-    def squared_speed(self, x: Array, v: Values) -> Values:
-        """Return |r'(v)|^2 in units of the chord."""
-        values: Values = (bernstein_sum(self.control_vectors(x), v) ** 2).sum(axis=1)
+    def squared_speed(self, x: Array, basis: Array) -> Values:
+        """Return |r'|^2 in units of the chord, where the Bernstein basis is given, shape (n, 5)."""
+        values: Values = ((basis @ self.control_vectors(x)) ** 2).sum(axis=1)
         return values
 
-    def slack_gradient(self, x: Array, v: Values) -> Matrix:
-        """Return the gradient of t - |r'(v)|^2 by (x, t), shape (n, 5)."""
-        speed = bernstein_sum(self.control_vectors(x), v)
-        columns = [-2.0 * (speed * bernstein_sum(g, v)).sum(axis=1) for g in self.gradients(x)]
-        return np.stack([*columns, np.ones(v.size)], axis=1)
+    def slack_gradient(self, x: Array, basis: Array) -> Array:
+        """Return the gradient of t - |r'|^2 by (x, t), shape (n, 5)."""
+        speed = basis @ self.control_vectors(x)
+        rates = np.einsum("nk,xnk->nx", speed, basis @ self.gradients(x))
+        return np.concatenate([-2.0 * rates, np.ones((len(speed), 1))], axis=1)
 
     def peaks(self, x: Array) -> Values:
         """Return the ends and every stationary v of |r'(v)|^2 in [0, 1]: roots of its derivative, degree 7."""
-        return stationary(lambda v: self.squared_speed(x, v), degree=8)
+        return stationary(lambda v: self.squared_speed(x, bernstein_basis(DEGREE, v)), degree=2 * DEGREE)
 
     def answer(self, x: Array, peaks: Values, least: float) -> Minimax:
         """Return the solution in mm."""
-        speeds = np.sqrt(self.squared_speed(x, peaks))
+        speeds = np.sqrt(self.squared_speed(x, bernstein_basis(DEGREE, peaks)))
         top = float(speeds.max())
         a0, a1, b0, b1 = (float(value) * self.chord for value in x)
         active = tuple(float(v) for v, s in zip(peaks, speeds, strict=True) if s >= top * (1.0 - ACTIVE))

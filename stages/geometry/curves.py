@@ -134,17 +134,20 @@ def exactly(values: Sequence[float] | Array) -> tuple[Fraction, ...]:
     return tuple(Fraction(float(value)) for value in values)
 
 
+def bernstein_basis(degree: int, v: Values) -> Array:
+    """Return the Bernstein polynomials of a degree at v, shape (n points, degree + 1)."""
+    powers = np.ones((degree + 1, v.size))
+    others = np.ones((degree + 1, v.size))
+    for i in range(1, degree + 1):
+        powers[i] = powers[i - 1] * v
+        others[i] = others[i - 1] * (1.0 - v)
+    basis: Array = np.array([comb(degree, i) for i in range(degree + 1)])[:, None] * powers * others[::-1]
+    return basis.T
+
+
 def bernstein_sum(coefficients: Array, v: Values) -> Array:
     """Return sum_i B_i^n(v) coefficients[i], shape (n points, k); stable for v in [0, 1]."""
-    n = coefficients.shape[0] - 1
-    w = 1.0 - v
-    powers = np.ones((n + 1, v.size))
-    others = np.ones((n + 1, v.size))
-    for i in range(1, n + 1):
-        powers[i] = powers[i - 1] * v
-        others[i] = others[i - 1] * w
-    basis = np.array([comb(n, i) for i in range(n + 1)])[:, None] * powers * others[::-1]
-    total: Array = basis.T @ coefficients
+    total: Array = bernstein_basis(coefficients.shape[0] - 1, v) @ coefficients
     return total
 
 

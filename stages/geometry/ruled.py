@@ -128,7 +128,9 @@ def turn_rate(f: Frames) -> Values:
     e = p / |p|, w the unit vector across the ruling at its middle.  A turn that is rounding of p' counts as none:
     divided by a ruling that shrinks to nothing it would grow without bound.
     """
-    length, turn = norm(f.p), dot(f.p_d1, unit(across(f, 0.5)[1]))
+    e = unit(f.p)
+    # p' without its part along the ruling: w is perpendicular to it only to rounding over the sine of their angle
+    length, turn = norm(f.p), dot(f.p_d1 - dot(f.p_d1, e)[:, None] * e, unit(across(f, 0.5)[1]))
     turns = (length > 0.0) & (np.abs(turn) > PARALLEL * norm(f.p_d1))
     return np.divide(turn, length, out=np.zeros_like(length), where=turns)
 

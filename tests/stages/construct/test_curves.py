@@ -146,6 +146,12 @@ def test_an_ellipse_starts_at_its_major_axis_and_a_helix_at_plus_x() -> None:
         assert_near(jet[0], [2 * cos(a), 2 * sin(a), 7.5 * v], bound=64 * EPS * 10, why="an angle of 9.4 rad")
 
 
+def test_two_coordinates_lie_in_the_plane_z_equal_to_zero() -> None:
+    points = [jet[0] for _, jet in jets(read({"line": [[1, 2], [3, 4, 7]]}), 0)]
+    assert points[0].tolist() == [1.0, 2.0, 0.0]
+    assert points[-1].tolist() == [3.0, 4.0, 7.0]
+
+
 def test_a_polyline_and_a_chain_share_the_parameter_evenly() -> None:
     assert read({"polyline": [[0, 0, 0], [9, 0, 0], [9, 1, 0]]}).breaks == (0, Fraction(1, 2), 1)
     link = read({"chain": [{"line": [[0, 0, 0], [1, 0, 0]]}, {"polyline": [[1, 0, 0], [2, 0, 0], [2, 1, 0.5]]}]})

@@ -37,12 +37,14 @@ def by_de_casteljau(coefficients: list[Fraction], v: Fraction) -> Fraction:
     return row[0]
 
 
+@settings(max_examples=30)
 @given(COEFFICIENTS)
 def test_a_polynomial_has_the_values_of_its_bernstein_coefficients(coefficients: list[Fraction]) -> None:
     f = from_bernstein(coefficients)
     assert all(f(v) == by_de_casteljau(coefficients, v) for v in PLACES)
 
 
+@settings(max_examples=30)
 @given(COEFFICIENTS, COEFFICIENTS)
 def test_products_sums_and_differences_are_exact(a: list[Fraction], b: list[Fraction]) -> None:
     f, g = from_bernstein(a), from_bernstein(b)
@@ -52,6 +54,7 @@ def test_products_sums_and_differences_are_exact(a: list[Fraction], b: list[Frac
         assert add(f, g, sign=-1)(v) == f(v) - g(v)
 
 
+@settings(max_examples=30)
 @given(COEFFICIENTS, st.integers(0, 4))
 def test_elevation_changes_the_degree_and_no_value(coefficients: list[Fraction], more: int) -> None:
     f = from_bernstein(coefficients)
@@ -60,6 +63,7 @@ def test_elevation_changes_the_degree_and_no_value(coefficients: list[Fraction],
     assert all(raised(v) == f(v) for v in PLACES)
 
 
+@settings(max_examples=30)
 @given(COEFFICIENTS)
 def test_the_derivative_is_that_of_the_monomials(coefficients: list[Fraction]) -> None:
     f = from_bernstein(coefficients)
@@ -94,6 +98,7 @@ def test_vector_products_are_those_of_the_values(a: list[tuple[Fraction, ...]], 
         ]  # fmt: skip
 
 
+@settings(max_examples=30)
 @given(COEFFICIENTS.filter(any), st.integers(0, 3), st.integers(0, 3))
 def test_factors_at_the_ends_are_found_and_divided_out(coefficients: list[Fraction], a: int, b: int) -> None:
     f = from_bernstein(coefficients)
@@ -105,6 +110,7 @@ def test_factors_at_the_ends_are_found_and_divided_out(coefficients: list[Fracti
     assert end_zeros(Polynomial((0, 0, 0))) == (0, 0)
 
 
+@settings(max_examples=30)
 @given(COEFFICIENTS, st.lists(st.booleans(), max_size=8))
 def test_a_part_of_a_polynomial_is_bounded_by_its_coefficients(coefficients: list[Fraction], turns: list[bool]) -> None:
     f = from_bernstein(coefficients)

@@ -95,6 +95,17 @@ def test_a_plane_patch_unrolls_to_itself() -> None:
     assert_near(distances(flat(develop((patch,)))), distances(space), bound=1e-14 * 90, why="1e-14 of 90 mm")
 
 
+@pytest.mark.parametrize("lean", ["0.1", "1e-7", "1e-12"])
+def test_rulings_that_grow_much_and_turn_little_still_turn(lean: str) -> None:
+    """A plane trapezium: rulings from (0, 1) to (lean, 2); its corners keep their distances."""
+    lower, upper = [[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [str(1 + Fraction(lean)), 2, 0]]
+    patch = patches({"kind": "ruled", "c0": {"line": lower}, "c1": {"line": upper}})[0]
+    points = flat(develop((patch,)), np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))
+    a = float(lean)
+    expected = [[0.0, 0.0], [1.0, 0.0], [2.0, 1.0 + a], [0.0, 1.0]]
+    assert_near(points, [[x, y] for x, y in expected], bound=1e-14, why="1e-14 of 2 mm, the first ruling along x")
+
+
 def test_a_tangent_surface_of_a_helix_unrolls_to_circles() -> None:
     """Edge (2 cos t, 2 sin t, t), rulings from 1/2 to 2 along the tangent: its curvature 2/5 stays in the flat.
 
@@ -283,6 +294,20 @@ def test_parallel_rulings_stay_parallel_where_they_shrink_to_nothing() -> None:
     assert_near(norm(rulings), length, bound=1e-12, why="1e-14 of 164 mm")
     across = rulings[:, 0] * rulings[10, 1] - rulings[:, 1] * rulings[10, 0]
     assert_near(across, 0.0 * v, bound=1e-14 * 164**2 * 4, why="one direction")
+
+
+@pytest.mark.parametrize(
+    ("direction", "lean"), [((-0.84, -0.47, 0.95), 0.03), ((0.57, 0.66, 0.51), 0.07), ((0.32, 0.4, 0.72), 0.17)]
+)
+def test_parallel_rulings_do_not_turn_by_rounding_however_short_they_get(
+    direction: tuple[float, ...], lean: float
+) -> None:
+    """p'.w of these is 1e-17 and not 0: over a ruling that shrinks to nothing it would turn without bound."""
+    arc = {"arc": {"center": [0, 0, 0], "radius": 100, "start": 0, "end": 60}}
+    table = {"kind": "cylinder", "directrix": arc, "direction": list(direction),
+             "end_plane": {"point": [100, 0, 0], "normal": [1, lean, 3]}}  # fmt: skip
+    made = develop(patches(table))
+    assert not made.pieces[0].phi[:, 1:].any()
 
 
 def test_rulings_that_turn_without_end_are_refused_with_the_number_reached() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from stages.geometry import ruled
-from stages.geometry.arrays import EPS, dot, norm
+from stages.geometry.arrays import EPS, Array, dot, norm
 from stages.geometry.curves import Circular, bezier, exactly
 from stages.geometry.ruled import RuledPatch, between, end_normals, frames
 from tests.near import assert_near, assert_relative
@@ -99,6 +99,20 @@ def test_an_apex_bends_without_bound_unless_the_part_is_plane() -> None:
     assert np.isfinite(ruled.curvature(cone, V, 0.0)).all()
 
 
+def test_the_curvature_of_a_tangent_surface_is_torsion_over_curvature_and_distance() -> None:
+    """Edge (2 cos t, 2 sin t, t), rulings from 1/2 to 2 along its tangent: kappa = 2/5, tau = 1/5, rho = 2 s."""
+    x, y, z = np.eye(3)
+    root = sqrt(5.0)
+
+    def rail(s: float) -> Circular:
+        return Circular(s / root * z, 2.0 * x + 2.0 * s / root * y, 2.0 * y - 2.0 * s / root * x, z, 0.0, 2.0)
+
+    patch = between(rail(0.5), rail(2.0))
+    for u in (0.0, 0.5, 1.0):
+        expected = np.full(33, 0.5 / (0.5 + 1.5 * u))
+        assert_relative(np.abs(ruled.curvature(patch, V, u)), expected, bound=1e-12, why="closed form")
+
+
 def test_the_curvature_of_an_elliptic_cylinder_is_that_of_its_right_section() -> None:
     """Rulings along y/2 + z: the section across them is an ellipse of semi-axes 5 and 2 cos(atan(1/2))."""
     b = 2.0 * 2.0 / sqrt(5.0)
@@ -146,6 +160,28 @@ def test_points_of_a_patch_lie_on_its_rulings_and_a_part_has_the_same_points() -
     u = np.linspace(0.0, 1.0, 33)
     bound = 64 * EPS * 700.0
     assert_near(ruled.at(half, u, V), ruled.at(patch, u, 0.25 + V / 2.0), bound=bound, why="points up to 700 mm")
+
+
+class Spiral:
+    """A curve on the helicoid z = c a that moves outwards as it turns: (r + v) (cos v, sin v, 0) + c v z."""
+
+    def __init__(self, r: float, c: float) -> None:
+        self.r, self.c = r, c
+
+    def jet(self, v: Array, order: int) -> Array:
+        assert order <= 2
+        e = np.stack([np.cos(v), np.sin(v), 0.0 * v], axis=1)
+        e_d1 = np.stack([-np.sin(v), np.cos(v), 0.0 * v], axis=1)
+        reach, z = (self.r + v)[:, None], np.array([0.0, 0.0, 1.0])
+        jets = [reach * e + self.c * v[:, None] * z, e + reach * e_d1 + self.c * z, 2.0 * e_d1 - reach * e]
+        return np.stack(jets[: order + 1])
+
+
+def test_a_minimal_surface_has_no_curvature_across_its_rulings_however_its_edges_run() -> None:
+    """On a helicoid the mean curvature is 0, and so is the curvature across the straight rulings."""
+    patch = between(Spiral(1.0, 0.5), Spiral(3.0, 0.5))
+    for u in (0.0, 0.5, 1.0):
+        assert_near(ruled.curvature(patch, V, u), 0.0 * V, bound=1e-13, why="terms of size 1 that cancel")
 
 
 def test_the_box_of_points_has_their_diagonal() -> None:

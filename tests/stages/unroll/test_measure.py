@@ -110,6 +110,35 @@ def test_a_shear_shows_as_strain_of_half_its_size(amount: float, monkeypatch: py
     assert_near(strain, amount / 2.0, bound=amount**2 + 1e-10, why="singular values 1 +- amount / 2 to first order")
 
 
+def test_a_pattern_that_only_leans_is_seen_by_the_angle_between_its_directions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lengths along and across the rulings kept, the angle between them changed by 1e-6: F alone tells."""
+    made = develop(patches({"kind": "cone", "radius0": 2, "radius1": 2, "height": 3, "sweep": 90}))
+    honest = development.positions
+
+    def leaning(piece: object, u: Array, v: Array) -> Array:
+        points = honest(piece, u, v)
+        return points @ np.array([[1.0, 0.0], [np.sin(1e-6), np.cos(1e-6)]])
+
+    monkeypatch.setattr(measure, "positions", leaning)
+    found = measure.metric_error(made, [measure.at_nodes(made.pieces[0])]).value
+    assert_near(found, np.sin(1e-6), bound=1e-11, why="F over sqrt(E G) is the sine")
+
+
+def test_one_panel_out_of_place_is_seen_though_every_length_is_right() -> None:
+    (patch,) = patches(EXAMPLE_1)
+    made = develop((patch,))
+    piece = made.pieces[0]
+    assert piece.breaks.size > 4, "the test needs inner panels"
+    shifted = piece.q.copy()
+    shifted[1, 0] += 1e-6
+    torn = Development((piece.replace(q=shifted),))
+    nodes = [measure.at_nodes(p) for p in torn.pieces]
+    corners = outline.corners(torn)
+    lengths = measure.flat_edges(nodes, corners).values()
+    assert_near(lengths, measure.surface_edges((patch,)).values(), bound=1e-11, why="moved, not stretched")
+    assert measure.metric_error(torn, nodes).value > SEEN
+
+
 def test_a_torn_pattern_shows_the_gap_between_its_pieces() -> None:
     from fractions import Fraction
 
