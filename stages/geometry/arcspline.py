@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Array, ArrayValue, Points2, Values
+from stages.geometry.arrays import Array, ArrayValue, Mask, Points2, Values
 
 Plane = NDArray[np.complex128]
 """Points as complex numbers, shape (samples,) or (joints,)."""
@@ -116,11 +116,19 @@ def chain(stretch: Stretch, *, accuracy: float, least_piece: float) -> Chain:
         best = min(best, float(far.max()) + between)
         if between > accuracy * SETTLED_DENSITY:
             break
+        if _at_least(place, breaks, far + between > accuracy, least_piece) and stalled:
+            break
         _tighten(share, breaks, far + between, accuracy)
     sparse = between > accuracy * SETTLED_DENSITY or place.size < ENOUGH * breaks.size
     raise (TooSparseError if sparse else NoSolutionError)(
         "arcs along an edge", reached=best, wanted=accuracy, unit="mm"
     )
+
+
+def _at_least(place: Plane, breaks: Joints, too_far: Mask, least_piece: float) -> bool:
+    """Return whether an arc that is too far is as short as may be: it ends at the first sample past `least_piece`."""
+    before_end = np.abs(place[np.maximum(breaks[1:] - 1, breaks[:-1])] - place[breaks[:-1]])
+    return bool((too_far & (before_end < least_piece)).any())
 
 
 def _tighten(share: Array, breaks: Joints, far: Array, accuracy: float) -> None:

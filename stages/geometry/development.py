@@ -70,10 +70,11 @@ def _turned(piece: FlatPiece, angle: float) -> FlatPiece:
 
 def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> FlatPiece:
     """Return one piece that starts with the angle phi0 at q0."""
-    breaks, rates = _gently_turning(patch, *quadrature.panels(lambda v: _rates(patch, v), subject))
+    scale = _scale(patch)
+    breaks, rates = _gently_turning(patch, scale, *quadrature.panels(lambda v: _rates(patch, scale, v), subject))
     half = np.diff(breaks)[:, None] / 2.0
     # the turning is scaled to a length (see _rates): back to rad here
-    turn = half * quadrature.coefficients(rates[..., 0] / _scale(patch)) @ ANTIDERIVATIVE.T
+    turn = half * quadrature.coefficients(rates[..., 0] / scale) @ ANTIDERIVATIVE.T
     phi = _chained(turn[..., None], np.array([phi0]))[..., 0]
     e, e_perp = _axes(phi @ AT_NODES.T)
     velocity = rates[..., 1:2] * e + rates[..., 2:3] * e_perp
@@ -81,16 +82,16 @@ def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> Flat
     return FlatPiece(patch, breaks, phi, _chained(steps, q0))
 
 
-def _gently_turning(patch: RuledPatch, breaks: Array, rates: Array) -> tuple[Array, Array]:
+def _gently_turning(patch: RuledPatch, scale: float, breaks: Array, rates: Array) -> tuple[Array, Array]:
     """Return the panels, those divided on which the ruling turns far: E and E_perp must be resolved too."""
-    turned = np.diff(breaks) / 2.0 * (np.abs(rates[..., 0]) @ WEIGHTS) / _scale(patch)
+    turned = np.diff(breaks) / 2.0 * (np.abs(rates[..., 0]) @ WEIGHTS) / scale
     counts = np.maximum(np.ceil(turned / MOST_TURN), 1.0).astype(int)
     if counts.max() == 1:
         return breaks, rates
     parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(breaks[:-1], breaks[1:], counts, strict=True)]
     breaks = np.append(np.concatenate(parts), 1.0)
     v = quadrature.nodes(breaks[:-1], breaks[1:])
-    return breaks, _rates(patch, v.ravel()).reshape(*v.shape, -1)
+    return breaks, _rates(patch, scale, v.ravel()).reshape(*v.shape, -1)
 
 
 MOST_TURN = 1.0
@@ -113,8 +114,8 @@ def _axes(phi: Array) -> tuple[Array, Array]:
     return np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)
 
 
-def _rates(patch: RuledPatch, v: Values) -> Array:
-    """Return phi' times the patch's length scale, c0'.e, c0'.w, |p|, |c0'| and |c1'|, shape (n, 6), all mm.
+def _rates(patch: RuledPatch, scale: float, v: Values) -> Array:
+    """Return phi' times the length `scale`, c0'.e, c0'.w, |p|, |c0'| and |c1'|, shape (n, 6), all mm.
 
     The last three are here only to be resolved: positions depend on |p|, and lengths measured on them on the speeds.
     """
@@ -123,7 +124,7 @@ def _rates(patch: RuledPatch, v: Values) -> Array:
     e = unit(f.p)
     w = unit(across(f, 0.5)[1])
     speeds = norm(f.c0_d1), norm(f.c1_d1)
-    return np.stack([turn_rate(f) * _scale(patch), dot(f.c0_d1, e), dot(f.c0_d1, w), length, *speeds], axis=1)
+    return np.stack([turn_rate(f) * scale, dot(f.c0_d1, e), dot(f.c0_d1, w), length, *speeds], axis=1)
 
 
 def _scale(patch: RuledPatch) -> float:
