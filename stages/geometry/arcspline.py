@@ -18,31 +18,17 @@ directions are complex numbers here.  Chains of arcs through data: [1]_.
 """
 
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from stages.errors import NoSolutionError
+from stages.geometry.arcbreaks import Joints, Plane, Stretch, as_plane, breaks_within, from_circle
 from stages.geometry.arrays import Array, ArrayValue, Mask, Points2, Values
 
-Plane = NDArray[np.complex128]
-"""Points as complex numbers, shape (samples,) or (joints,)."""
-
-Joints = NDArray[np.int64]
-"""Indices of the samples where arcs meet, first and last sample included, shape (joints,)."""
-
-WIDEST_ARC_RAD = pi / 2.0
-TRIAL_POINTS = 24
-"""Points of an arc at which a trial is measured; the finished chain is measured at all samples."""
-
-NEARLY_THERE, FULL = 1.1, 0.93
-"""The end is tried if it is so little beyond a guess; an arc that uses so much of its tolerance will do."""
-
-TRIALS, NEWTON_STEPS, ROUNDS, PATIENCE = 12, 12, 40, 10
+NEWTON_STEPS, ROUNDS, PATIENCE = 12, 40, 10
 """PATIENCE: rounds without a change, each at half the tolerance, after which the arcs are as short as they may be.  An
-arc whose end direction is kept departs further than the free one that the breaks were chosen for, by up to 8 times."""
+arc whose end direction is kept departs further than the free one that the breaks were chosen for."""
 
 MET = 1e-13
 """Joints that turn by less (rad) are smooth to rounding."""
@@ -66,16 +52,6 @@ class TooSparseError(NoSolutionError):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stretch(ArrayValue):
-    """A smooth stretch of a curve: samples, mm and rad, and whether its end directions must be kept."""
-
-    points: Points2
-    angle: Values
-    keep_start: bool
-    keep_end: bool
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Chain(ArrayValue):
     """Vertices in mm, one bulge fewer for the pieces between them, and the reached distance in mm.
 
@@ -94,11 +70,11 @@ def chain(stretch: Stretch, *, accuracy: float, least_piece: float) -> Chain:
     Raises TooSparseError if more samples could help, else NoSolutionError.
     """
     share = np.ones(stretch.angle.size)
-    place = _plane(stretch.points)
+    place = as_plane(stretch.points)
     best, between, breaks = float("inf"), 0.0, np.zeros(0, dtype=np.int64)
     stalled = 0
     for _ in range(ROUNDS):
-        before, breaks = breaks, _breaks(stretch, place, accuracy * share, least_piece)
+        before, breaks = breaks, breaks_within(stretch, place, accuracy * share, least_piece)
         if np.array_equal(before, breaks):
             stalled += 1
             share *= 0.5
@@ -141,82 +117,6 @@ def _tighten(share: Array, breaks: Joints, far: Array, accuracy: float) -> None:
 
 TIGHTER = 0.9
 """Aim a little below the tolerance: 0.95 costs twice the rounds for no arc fewer, 0.75 costs an arc in twenty."""
-
-
-def _breaks(stretch: Stretch, place: Plane, tolerance: Values, least_piece: float) -> Joints:
-    """Return the indices of the samples where arcs meet, as few and as equal as the tolerance lets them be."""
-    breaks, full = _greedy(stretch, place, tolerance, least_piece)
-    count = breaks.size - 1
-    # the last arc is what was left over; by the cubic law this tolerance would fill all of them alike
-    scale = ((count - 1 + np.cbrt(min(full, 1.0))) / count) ** 3
-    for power in EQUALISE:
-        equal, _ = _greedy(stretch, place, tolerance * scale**power, least_piece)
-        if equal.size == breaks.size:
-            return equal
-    return breaks
-
-
-EQUALISE = (1.0, 0.7, 0.4, 0.2)
-"""Powers of the levelling factor to try, the boldest first: a trial may need one arc more and is then dropped."""
-
-
-def _greedy(stretch: Stretch, place: Plane, tolerance: Values, least_piece: float) -> tuple[Joints, float]:
-    """Return breaks, each as far on as its arc may reach, and the share of its tolerance that the last arc uses."""
-    last = place.size - 1
-    travelled = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(place)))])
-    breaks, width, full = [0], max(last // 8, 1), 0.0
-    while breaks[-1] < last:
-        start = breaks[-1]
-        least = int(np.searchsorted(travelled, travelled[start] + least_piece))
-        end, full = _longest(stretch.angle, place, tolerance, start, width)
-        end = max(end, min(least, last))
-        width = end - start
-        breaks.append(end)
-    if len(breaks) > 2 and travelled[last] - travelled[breaks[-2]] < least_piece:  # noqa: PLR2004  more than one arc
-        del breaks[-2]
-    if len(breaks) == 2 and stretch.keep_start and stretch.keep_end:  # noqa: PLR2004  one arc has one free end only
-        breaks.insert(1, last // 2)
-    return np.array(breaks), full
-
-
-def _longest(angle: Values, place: Plane, tolerance: Values, start: int, width: int) -> tuple[int, float]:
-    """Return the end of the longest arc from `start` found within the tolerance, and the share of it that it uses."""
-    last = place.size - 1
-    good, bad, used = start + 1, last + 1, 0.0
-    end = min(start + width, last)
-    for _ in range(TRIALS):
-        excess = _excess(angle, place, tolerance, start, end)
-        if excess <= 1.0:
-            good, used = end, excess
-        else:
-            bad = end
-        if bad - good <= 1 or FULL <= excess <= 1.0:
-            break
-        guess = start + int((end - start) * min(max(0.98 / np.cbrt(max(excess, 1e-9)), 0.25), 2.0))
-        if bad > last and last - start < NEARLY_THERE * (guess - start):
-            guess = last
-        end = guess if good < guess < bad else (good + bad) // 2
-    return good, used
-
-
-def _excess(angle: Values, place: Plane, tolerance: Values, start: int, end: int) -> float:
-    """Return the distance of the samples to the arc through two of them, as a multiple of the tolerance."""
-    half = (angle[end] - angle[start]) / 2.0
-    if abs(half) > WIDEST_ARC_RAD / 2.0 or end == start:
-        return float(2.0 * (abs(half) / (WIDEST_ARC_RAD / 2.0)) ** 3)
-    chord = complex(place[end] - place[start])
-    heading = chord / abs(chord)
-    stride = max((end - start) // TRIAL_POINTS, 1)
-    offset = (place[start:end:stride] - place[start]) / (heading * complex(np.cos(half), -np.sin(half)))
-    far = _from_circle(offset, np.array(2.0 * np.sin(half) / abs(chord)))
-    return float(np.max(np.abs(far)) / tolerance[start : end + 1].min())
-
-
-def _from_circle(offset: Plane, curvature: Array) -> Array:
-    """Return the signed distance, mm, to the circle through 0 along the real axis; stable for all curvatures."""
-    twice = 2.0 * offset.imag - curvature * (offset.real**2 + offset.imag**2)
-    far: Array = twice / (1.0 + np.sqrt(np.maximum(1.0 - curvature * twice, 0.0)))
-    return far
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -296,19 +196,13 @@ def _least_step(miss: Array, chord: Plane, normal: Plane, free_move: Array, free
 def _deviation(stretch: Stretch, place: Plane, breaks: Joints, joined: _Joined) -> tuple[Array, float]:
     """Return the largest distance of the samples of each arc to it, and what may lie between samples, in mm."""
     piece = np.repeat(np.arange(breaks.size - 1), np.diff(breaks))
-    vertices = _plane(joined.vertices)
+    vertices = as_plane(joined.vertices)
     offset = (place[:-1] - vertices[piece]) * np.exp(-1j * joined.angle[piece])
     chord = np.abs(np.diff(vertices))
     curvature = 2.0 * np.sin(np.diff(joined.angle) / 2.0) / chord
-    far = _from_circle(offset, curvature[piece])
+    far = from_circle(offset, curvature[piece])
     step = np.abs(np.diff(place))
     slope = np.diff(far) / np.maximum(step[:-1], np.finfo(float).tiny)
     bend = np.abs(np.diff(slope)) / 2.0 * np.maximum(step[:-2], step[1:-1])
     between = float(bend.max()) / 4.0 if bend.size else 0.0
     return np.maximum.reduceat(np.abs(far), breaks[:-1]), between
-
-
-def _plane(points: Points2) -> Plane:
-    """Return points as complex numbers."""
-    plane: Plane = points[:, 0] + 1j * points[:, 1]
-    return plane

@@ -16,8 +16,9 @@ from math import ceil, dist, hypot, pi, radians, tan
 import numpy as np
 
 from stages.errors import NoSolutionError
+from stages.geometry.arcbreaks import Stretch
 from stages.geometry.arcpath import ArcPath
-from stages.geometry.arcspline import Stretch, TooSparseError, chain
+from stages.geometry.arcspline import TooSparseError, chain
 from stages.geometry.arrays import EPS, Array, Points2, Values, norm
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from stages.geometry.sampling import Resolved, Samples, resolved, samples

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from stages.errors import NoSolutionError
 from stages.geometry import arcpath
+from stages.geometry.arcbreaks import Stretch
 from stages.geometry.arcpath import ArcPath
-from stages.geometry.arcspline import Stretch, chain
+from stages.geometry.arcspline import chain
 from stages.geometry.biarc import FINEST_PIECE_MM, LEAST_PIECE_MM, fit, trace
 from stages.geometry.plane import CircularArc, Segment
 from tests.stages.geometry.plane_curves import CONE, ELLIPSE, SINE, TAU, Formula, brute_distance, waves
