@@ -71,8 +71,8 @@ def test_a_wrong_sign_or_a_small_wrong_factor_of_a_rate_is_seen(
     honest = development._rates
     for factor in (-1.0, 1.0 + 1e-6):
 
-        def wrong(patch: object, v: Array, factor: float = factor) -> Array:
-            rates = honest(patch, v)
+        def wrong(patch: object, scale: float, v: Array, factor: float = factor) -> Array:
+            rates = honest(patch, scale, v)
             rates[:, channel] *= factor
             return rates
 
