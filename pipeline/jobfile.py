@@ -20,7 +20,7 @@ from pipeline.paths import Path, written
 from pipeline.sources import Sources
 from pipeline.units import JOB_UNITS
 from stages.errors import BadInputError, Problem
-from stages.model.curves import Table, Trouble
+from stages.model.curves import Table, Trouble, negatives, not_positive
 from stages.model.cutfile import Flavour, Version
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
@@ -34,22 +34,6 @@ Rotations = Literal["free"] | tuple[Angle, ...]
 def length_mm(text: float) -> Length:
     """Return the length that a default writes."""
     return Length(repr(text))
-
-
-def negatives(table: Table, *keys: str) -> Iterator[Trouble]:
-    """Yield the values that are given and below 0."""
-    for key in keys:
-        value = getattr(table, key)
-        if value is not None and value < 0:
-            yield Trouble(key, f"{float(value):g}", "may not be negative")
-
-
-def not_positive(table: Table, *keys: str) -> Iterator[Trouble]:
-    """Yield the values that are given and not above 0."""
-    for key in keys:
-        value = getattr(table, key)
-        if value is not None and value <= 0:
-            yield Trouble(key, f"{float(value):g}", "must be above 0")
 
 
 class JobTable(Table, frozen=True, kw_only=True):

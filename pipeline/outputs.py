@@ -1,7 +1,7 @@
 """Everything that goes into the output folder of a job: report, drawings, pictures."""
 
 from pipeline.files import drawings, file_names
-from pipeline.report.document import Document, document, encoded
+from pipeline.report.document import Document, class_of, document, encoded
 from pipeline.report.lines import stage_line, trouble_lines
 from pipeline.run import JobResult, PartRun
 from pipeline.store import REPORT
@@ -25,7 +25,7 @@ def pictures(result: JobResult) -> dict[str, bytes]:
     for run in result.parts:
         if run.surface is not None:
             name = f"preview/{names.parts[run.part.name]}.png"
-            drawn[name] = part_picture(run.surface, run.pattern, remarks(run), worst_v(run), reached(run))
+            drawn[name] = part_picture(run.surface, run.pattern, remarks(run), worst_v(run), class_of(run))
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
     for layout in result.nest.product.layouts if result.nest.product is not None else ():
         name = names.drawing(layout).replace("cut/", "preview/").replace(".dxf", ".png")
@@ -47,9 +47,3 @@ def worst_v(run: PartRun) -> float | None:
             if isinstance(place, float | int):
                 return float(place)
     return None
-
-
-def reached(run: PartRun) -> str | None:
-    """Return the class that verify found."""
-    classes = [step.report.detail["class"] for step in run.steps if "class" in step.report.detail]
-    return str(classes[0]) if classes else None

@@ -115,7 +115,7 @@ def _part(run: PartRun, measured: Figures | None) -> Document:
     return {
         "name": run.part.name,
         "quantity": run.part.spec.quantity,
-        "class": detail.get("class", class_without_certificate(run)),
+        "class": class_of(run),
         "flat": detail.get("flat") if passed else None,
         "surface": detail.get("surface") if passed else None,
         **_figures(measured),
@@ -123,9 +123,11 @@ def _part(run: PartRun, measured: Figures | None) -> Document:
     }
 
 
-def class_without_certificate(run: PartRun) -> str:
-    """Return the class of a part that verify did not get to see, or did not name."""
-    return "inconclusive" if any(step.short for step in run.steps) else "rejected"
+def class_of(run: PartRun) -> str:
+    """Return the class by warp and strain of a part that passed; else rejected, or inconclusive if a method fell short."""
+    if any(step.short for step in run.steps):
+        return "inconclusive"
+    return "rejected" if run.pattern is None else str(_detail(run)["class"])
 
 
 def _figures(measured: Figures | None) -> Document:

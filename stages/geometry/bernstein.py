@@ -129,34 +129,6 @@ class Piece:
     denominator: int
     shift: int = 0
 
-    @property
-    def low(self) -> float:
-        """Return a lower bound on this part: the least coefficient, rounded once (to nearest)."""
-        return self._value(min(self.b))
-
-    @property
-    def high(self) -> float:
-        """Return an upper bound on this part: the largest coefficient, rounded once (to nearest)."""
-        return self._value(max(self.b))
-
-    @property
-    def magnitude(self) -> float:
-        """Return an upper bound of the absolute value."""
-        return self._value(max(*self.b, -min(self.b)))
-
-    @property
-    def first(self) -> float:
-        """Return the value at the left end."""
-        return self._value(self.b[0])
-
-    @property
-    def last(self) -> float:
-        """Return the value at the right end."""
-        return self._value(self.b[-1])
-
-    def _value(self, coefficient: int) -> float:
-        return coefficient / (self.denominator << self.shift)
-
 
 def whole(f: Polynomial) -> Piece:
     """Return f on all of [0, 1], in Bernstein coefficients with a common denominator."""

@@ -33,6 +33,22 @@ class Table(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         yield from ()
 
 
+def not_positive(table: Table, *keys: str) -> Iterator[Trouble]:
+    """Yield the values that are given and not above 0."""
+    for key in keys:
+        value = getattr(table, key)
+        if value is not None and value <= 0:
+            yield Trouble(key, f"{float(value):g}", "must be above 0")
+
+
+def negatives(table: Table, *keys: str) -> Iterator[Trouble]:
+    """Yield the values that are given and below 0."""
+    for key in keys:
+        value = getattr(table, key)
+        if value is not None and value < 0:
+            yield Trouble(key, f"{float(value):g}", "may not be negative")
+
+
 class BSplineSpec(Table, frozen=True, kw_only=True):
     """A B-spline: knots in full (count = points + degree + 1), weights for a rational one."""
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from msgspec import Meta, field
 
-from stages.model.curves import Table, Trouble
+from stages.model.curves import Table, Trouble, not_positive
 from stages.model.scalars import Curvature, Direction, Length, Number, Point, is_zero
 
 ENDS_HAT = ("0", "1", "0_hat", "1_hat")
@@ -35,16 +35,8 @@ def same_points(spec: Table, *pairs: tuple[str, str]) -> Iterator[Trouble]:
             yield Trouble(second, f"{second} is the same point as {first}", "the two ends must differ")
 
 
-def not_positive(spec: Table, *keys: str) -> Iterator[Trouble]:
-    """Yield the values that are given and not above 0."""
-    for key in keys:
-        value = getattr(spec, key)
-        if value is not None and value <= 0:
-            yield Trouble(key, f"{float(value):g}", "must be above 0")
-
-
-class QuinticRuled(Table, frozen=True, kw_only=True, tag_field="kind", tag="quintic-ruled"):
-    """The paper's (2.1) and (2.2): two quintic directrices from their end data, values as given."""
+class DirectrixEnds(Table, frozen=True, kw_only=True):
+    """Both ends of a directrix (2.2): points, unit tangents, unit normals, curvatures."""
 
     p0: Point
     p1: Point
@@ -54,6 +46,11 @@ class QuinticRuled(Table, frozen=True, kw_only=True, tag_field="kind", tag="quin
     n1: Direction
     k0: Curvature
     k1: Curvature
+
+
+class QuinticRuled(DirectrixEnds, frozen=True, kw_only=True, tag_field="kind", tag="quintic-ruled"):
+    """The paper's (2.1) and (2.2): two quintic directrices from their end data, values as given."""
+
     alpha0: Length
     alpha1: Length
     beta0: Length
@@ -99,18 +96,10 @@ class QuinticPlanar(Table, frozen=True, kw_only=True, tag_field="kind", tag="qui
         yield from same_points(self, ("p0", "p1"), ("q0", "q1"), ("p0", "q0"), ("p1", "q1"))
 
 
-class QuinticCylinder(Table, frozen=True, kw_only=True, tag_field="kind", tag="quintic-cylinder"):
+class QuinticCylinder(DirectrixEnds, frozen=True, kw_only=True, tag_field="kind", tag="quintic-cylinder"):
     """Theorem 2.2: one quintic directrix, parallel rulings; beta = s alpha, Q1 - P1 = g (Q0 - P0)."""
 
-    p0: Point
     q0: Point
-    p1: Point
-    t0: Direction
-    t1: Direction
-    n0: Direction
-    n1: Direction
-    k0: Curvature
-    k1: Curvature
     alpha0: Length
     alpha1: Length
     s0: Number
@@ -125,21 +114,13 @@ class QuinticCylinder(Table, frozen=True, kw_only=True, tag_field="kind", tag="q
         yield from not_positive(self, "alpha0", "alpha1", "s0", "s1", "g")
 
 
-class QuinticCone(Table, frozen=True, kw_only=True, tag_field="kind", tag="quintic-cone"):
+class QuinticCone(DirectrixEnds, frozen=True, kw_only=True, tag_field="kind", tag="quintic-cone"):
     """Theorem 2.3: the cone over a quintic directrix; shape parameters by the minimax of |r'|, or given.
 
     guess: Algorithm 2's initial guess alpha0, alpha1, beta0, beta1; found from the chord if absent.
     fraction: which part of the way to the apex is kept.
     """
 
-    p0: Point
-    p1: Point
-    t0: Direction
-    t1: Direction
-    n0: Direction
-    n1: Direction
-    k0: Curvature
-    k1: Curvature
     apex: Point
     alpha0: Length | None = None
     alpha1: Length | None = None

@@ -42,3 +42,8 @@ class Tolerances:
 def class_by_warp(warp_deg: float) -> Class | None:
     """Return the best class whose warp limit holds, or None."""
     return next((name for name in CLASSES if warp_deg <= WARP_LIMIT_DEG[name]), None)
+
+
+def class_by_strain(strain: float) -> Class | None:
+    """Return the best class whose strain limit holds, or None."""
+    return next((name for name in CLASSES if strain <= STRAIN_LIMIT[name]), None)

@@ -17,7 +17,7 @@ from stages.geometry.development import Development, develop
 from stages.model.pattern import Contour, FlatPattern, Mark
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.surface import Certificate, Plate, RuledSurface
-from stages.model.tolerances import CLASSES, STRAIN_LIMIT, Class, Tolerances
+from stages.model.tolerances import CLASSES, STRAIN_LIMIT, Class, Tolerances, class_by_strain
 from stages.unroll import measure, outline
 from stages.unroll.marks import ruling_marks
 from stages.unroll.measure import Edges, PieceNodes
@@ -69,7 +69,8 @@ def _strip(surface: RuledSurface, reached: Class, tol: Tolerances) -> Outcome[Fl
     findings = (*_strain_findings(metrics, reached, tol), *_overlap_findings(covered))
     metrics = (*metrics, covered)
     marks = tuple(mark for spec in surface.part.spec.mark for mark in ruling_marks(development, spec))
-    report = StageReport("unroll", name, metrics, findings, _detail(corners, outer, sides))
+    detail = {"class": _class(metrics, reached)} | _detail(corners, outer, sides)
+    report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
     return Outcome(_pattern(surface, outer, marks, corners, tol), report)
@@ -116,15 +117,25 @@ def _metrics(
     ), sides
 
 
-def _strain_findings(metrics: tuple[Metric, ...], reached: Class, tol: Tolerances) -> tuple[Finding, ...]:
-    """Refuse a part whose strain is of a worse class than its warp and than the job accepts."""
+def _strain(metrics: tuple[Metric, ...]) -> tuple[Metric, float]:
     strain = next(metric for metric in metrics if metric.name == "max_strain")
-    if strain.passed or strain.value is None:
+    return strain, float(strain.value or 0.0)
+
+
+def _class(metrics: tuple[Metric, ...], by_warp: Class) -> str:
+    """Return the worse of the classes by warp and by strain; a part without warp has no strain but rounding."""
+    by_strain = class_by_strain(_strain(metrics)[1])
+    return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
+
+
+def _strain_findings(metrics: tuple[Metric, ...], reached: Class, tol: Tolerances) -> tuple[Finding, ...]:
+    """Refuse a part whose strain is of a worse class than the job accepts."""
+    strain, value = _strain(metrics)
+    if strain.passed:
         return ()
-    by_strain = next((name for name in CLASSES if strain.value <= STRAIN_LIMIT[name]), "no class")
     message = (
-        f"flattening strains the sheet by {float(strain.value):.3g}, allowed {STRAIN_LIMIT[tol.accept]:g} "
-        f"(accept = {tol.accept!r}); by warp it is {reached!r}, by strain {by_strain!r}"
+        f"flattening strains the sheet by {value:.3g}, allowed {STRAIN_LIMIT[tol.accept]:g} "
+        f"(accept = {tol.accept!r}); by warp it is {reached!r}, by strain {class_by_strain(value) or 'no class'!r}"
     )
     return (Finding("strain", message, True, strain.where),)
 

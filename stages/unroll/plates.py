@@ -29,7 +29,7 @@ def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
     findings = _crossing_findings(metrics[-1]) or _hole_findings(outer, inner, tol)
     low_x, low_y, high_x, high_y = arcpath.bounds(outer.path)
     corners = np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
-    report = StageReport("unroll", spec.name, metrics, findings, _detail(outer, inner, corners))
+    report = StageReport("unroll", spec.name, metrics, findings, {"class": "exact"} | _detail(outer, inner, corners))
     if not report.passed:
         return Outcome(None, report)
     pattern = FlatPattern(

@@ -11,7 +11,7 @@ A surface worse than `tol.accept` is refused with the place and the amount.  Str
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled import RuledPatch, frames, regression
 from stages.model.report import Finding, Metric, Outcome, StageReport, Where
 from stages.model.surface import Certificate, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
@@ -43,7 +43,7 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
     )
     reached = class_by_warp(float(warp.value or 0.0))
     if reached is None or not tol.accepts(reached):
-        findings.append(_rejection(warp, tol))
+        findings.append(_rejection(surface, warp, tol))
     passes = not any(finding.fatal for finding in findings)
     sampled_warp = max(extreme.value for extreme in warps) * DEG
     detail: dict[str, object] = {"class": reached if passes else "rejected", "sampled_warp_deg": sampled_warp}
@@ -131,10 +131,12 @@ SINGULAR = 1e-6
 """Relative size below which a ruling or a normal inside the patch is taken for zero: sampled, so not at rounding."""
 
 
-def _rejection(warp: Metric, tol: Tolerances) -> Finding:
+def _rejection(surface: RuledSurface, warp: Metric, tol: Tolerances) -> Finding:
     value = float(warp.value or 0.0)
     if value >= FOLDED_DEG:
-        message = "the edge of regression lies inside: the patch folds back on itself; shorten the rulings"
+        message = (
+            f"the edge of regression lies inside{_crossing(surface, warp)}: the patch folds back; shorten the rulings"
+        )
         return Finding("edge-of-regression", message, True, warp.where)
     reached = class_by_warp(value) or "no class"
     place = f"at v = {float((warp.where or {}).get('v', 0)):.6g}" if warp.where else ""
@@ -143,6 +145,14 @@ def _rejection(warp: Metric, tol: Tolerances) -> Finding:
         f"(accept = {tol.accept!r}); it reaches {reached!r}"
     )
     return Finding("not-developable", message, True, warp.where)
+
+
+def _crossing(surface: RuledSurface, warp: Metric) -> str:
+    """Return where the edge of regression crosses the worst ruling, if it is known and crosses it inside."""
+    v = float((warp.where or {}).get("v", 0.0))
+    piece = min(int(v), len(surface.patches) - 1)
+    u = float(regression(frames(surface.patches[piece], np.array([v - piece])))[0])
+    return f" (at u = {u:.4g}, v = {v:.4g})" if 0.0 <= u <= 1.0 else ""
 
 
 FOLDED_DEG = 90.0

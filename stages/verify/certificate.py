@@ -26,6 +26,8 @@ from stages.geometry.ruled import RuledPatch
 
 RAISES = (1e-10, 1e-6, 1e-3, 0.5, 2.0, 9.0, 99.0)
 """The bound tried is (1 + this) times the sampled value; beyond 100 times the proof is given up."""
+ELSEWHERE = tuple(Fraction(k, 16) for k in range(1, 16))
+"""Where a bound starts from if it is zero at the place given: a quintic's delta, of degree 13, is not zero at all 15."""
 SPLITS = 4000
 """Halvings that one proof may take: 2**-40 wide at some places, or 1/4000 everywhere."""
 NARROWEST = 2.0**-40
@@ -144,7 +146,7 @@ def _curvature_bound(made: Ingredients, warp: float, at: Fraction) -> float:
 
 def _raised(start: Fraction, below: Polynomial, above: Polynomial) -> Fraction | None:
     """Return t, a little above `start`, such that t below - above >= 0 on [0, 1] is proved; None if no try succeeds."""
-    floor = start or above(Fraction(1, 3)) / below(Fraction(1, 3))
+    floor = start or max(above(v) / below(v) for v in ELSEWHERE)
     for raised in RAISES:
         t = _rounded(floor * (1 + Fraction(raised)) ** 2)
         difference = bernstein.add(multiply(Polynomial((t.numerator,), t.denominator), below), above, sign=-1)
