@@ -124,7 +124,7 @@ def _part(run: PartRun, measured: Figures | None) -> Document:
 
 
 def class_of(run: PartRun) -> str:
-    """Return the class by warp and strain of a part that passed; else rejected, or inconclusive if a method fell short."""
+    """Return the class by warp and strain of a part that passed; else rejected, or open where a method fell short."""
     if any(step.short for step in run.steps):
         return "inconclusive"
     return "rejected" if run.pattern is None else str(_detail(run)["class"])

@@ -27,7 +27,7 @@ from stages.geometry.ruled import RuledPatch
 RAISES = (1e-10, 1e-6, 1e-3, 0.5, 2.0, 9.0, 99.0)
 """The bound tried is (1 + this) times the sampled value; beyond 100 times the proof is given up."""
 ELSEWHERE = tuple(Fraction(k, 16) for k in range(1, 16))
-"""Where a bound starts from if it is zero at the place given: a quintic's delta, of degree 13, is not zero at all 15."""
+"""Where a bound starts from if it is 0 at the place given: a quintic's delta, of degree 13, is not 0 at all 15."""
 SPLITS = 4000
 """Halvings that one proof may take: 2**-40 wide at some places, or 1/4000 everywhere."""
 NARROWEST = 2.0**-40
