@@ -11,7 +11,7 @@ from pipeline.report.pictures_canvas import length_text
 from stages.geometry import arcpath
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Values, cross2, norm
-from stages.geometry.development import DevelopedEdge, positions
+from stages.geometry.flatmap import DevelopedEdge
 from stages.geometry.plane import PlaneCurve
 from stages.model.pattern import FlatPattern
 
@@ -37,7 +37,7 @@ def rulings(pattern: FlatPattern, places: Sequence[float] | Array) -> list[Point
     whole = np.clip(np.floor(places).astype(np.int64), 0, len(pieces) - 1)
     ends = np.array([0.0, 1.0])
     return [
-        positions(pieces[i], ends, np.full(2, min(max(float(v) - i, 0.0), 1.0)))
+        pieces[i].positions(ends, np.full(2, min(max(float(v) - i, 0.0), 1.0)))
         for i, v in zip(whole.tolist(), places, strict=True)
     ]
 

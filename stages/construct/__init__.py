@@ -20,7 +20,7 @@ from stages.geometry.ruled import RuledPatch, at
 from stages.model.material import Part
 from stages.model.part import Flat
 from stages.model.report import Finding, Metric, Outcome, StageReport
-from stages.model.surface import RuledSurface, Surface
+from stages.model.surface import RuledSurface, Surface, whole_spans
 from stages.model.tolerances import Tolerances
 
 __all__ = ["construct"]
@@ -37,7 +37,7 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
     if built.patches and size > 0.0:
         metrics += [*_planar(built.patches), *_joins(built.patches, size, tol)]
     report = StageReport("construct", part.name, tuple(metrics), tuple(findings), built.detail)
-    surface = RuledSurface(part, built.patches, size) if report.passed else None
+    surface = RuledSurface(part, built.patches, size, whole_spans(len(built.patches))) if report.passed else None
     return Outcome(surface, report)
 
 

@@ -20,13 +20,14 @@ from numpy.polynomial import legendre
 
 from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, dot, norm, unit
+from stages.geometry.flatmap import Development
 from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
 from stages.geometry.ruled import RuledPatch, across, frames, turn_rate
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FlatPiece(ArrayValue):
-    """One piece, flat: Legendre series of phi and q on each panel, offsets included.
+class RulingMap(ArrayValue):
+    """One piece laid flat along its rulings: Legendre series of phi and q on each panel, offsets included.
 
     breaks: panel ends in v, shape (m + 1,).
     phi: coefficients, rad, shape (m, 17).  q: coefficients, mm, shape (m, 17, 2).
@@ -37,20 +38,30 @@ class FlatPiece(ArrayValue):
     phi: Array
     q: Array
 
+    def positions(self, u: Values, v: Values) -> Points2:
+        """Return the flat positions of S(u, v), mm: what every later stage sees of the surface."""
+        index, x = _locate(self, v)
+        e, _ = _axes(_series(self.phi[index][..., None], x)[:, 0])
+        rulings = norm(self.patch.p.jet(v, 0)[0])
+        return _series(self.q[index], x) + (u * rulings)[:, None] * e
 
-@dataclass(frozen=True, slots=True)
-class Development:
-    """The pieces of a strip, flat, in one frame.
+    def velocities(self, u: Values, v: Values) -> Points2:
+        """Return d/dv of the flat positions, mm, from the rates: for directions, never for measuring distortion.
 
-    c0(0) is at the origin and the first ruling along +x; the last one if the first has no length.
-    """
-
-    pieces: tuple[FlatPiece, ...]
+        Where a ruling has no length, and so no direction, they are those of the ruling beside it.
+        """
+        gone = norm(self.patch.p.jet(v, 0)[0]) <= NO_LENGTH * _scale(self.patch)
+        v = np.where(gone, np.clip(v, BESIDE, 1.0 - BESIDE), v)
+        e, e_perp = _axes(angle(self, v))
+        f = frames(self.patch, v)
+        w = unit(across(f, 0.5)[1])
+        s_v = f.c0_d1 + u[:, None] * f.p_d1
+        return dot(s_v, unit(f.p))[:, None] * e + dot(s_v, w)[:, None] * e_perp
 
 
 def develop(patches: tuple[RuledPatch, ...]) -> Development:
     """Return the flat map of the pieces.  Raises NoSolutionError where the quadrature does not resolve."""
-    pieces: list[FlatPiece] = []
+    pieces: list[RulingMap] = []
     phi, q = 0.0, np.zeros(2)
     for number, patch in enumerate(patches):
         piece = _flat_piece(patch, phi, q, f"unrolling piece {number}")
@@ -60,15 +71,15 @@ def develop(patches: tuple[RuledPatch, ...]) -> Development:
     return Development(tuple(pieces if first > 0.0 or last == 0.0 else (_turned(piece, -phi) for piece in pieces)))
 
 
-def _turned(piece: FlatPiece, angle: float) -> FlatPiece:
+def _turned(piece: RulingMap, angle: float) -> RulingMap:
     """Return the piece turned about the origin by an angle in rad."""
     phi = piece.phi.copy()
     phi[:, 0] += angle
     c, s = np.cos(angle), np.sin(angle)
-    return FlatPiece(piece.patch, piece.breaks, phi, piece.q @ np.array([[c, s], [-s, c]]))
+    return RulingMap(piece.patch, piece.breaks, phi, piece.q @ np.array([[c, s], [-s, c]]))
 
 
-def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> FlatPiece:
+def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> RulingMap:
     """Return one piece that starts with the angle phi0 at q0."""
     scale = _scale(patch)
     breaks, rates = _gently_turning(patch, scale, *quadrature.panels(lambda v: _rates(patch, scale, v), subject))
@@ -79,7 +90,7 @@ def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> Flat
     e, e_perp = _axes(phi @ AT_NODES.T)
     velocity = rates[..., 1:2] * e + rates[..., 2:3] * e_perp
     steps = half[..., None] * np.einsum("lk,pkc->plc", ANTIDERIVATIVE, quadrature.coefficients(velocity))
-    return FlatPiece(patch, breaks, phi, _chained(steps, q0))
+    return RulingMap(patch, breaks, phi, _chained(steps, q0))
 
 
 def _gently_turning(patch: RuledPatch, scale: float, breaks: Array, rates: Array) -> tuple[Array, Array]:
@@ -134,32 +145,10 @@ def _scale(patch: RuledPatch) -> float:
     return float(max(norm(f.p).max(), norm(f.c0[1:] - f.c0[:-1]).max()))
 
 
-def angle(piece: FlatPiece, v: Values) -> Values:
+def angle(piece: RulingMap, v: Values) -> Values:
     """Return the direction of the flat rulings at v, rad."""
     index, x = _locate(piece, v)
     return _series(piece.phi[index][..., None], x)[:, 0]
-
-
-def positions(piece: FlatPiece, u: Values, v: Values) -> Points2:
-    """Return the flat positions of S(u, v), mm: what every later stage sees of the surface."""
-    index, x = _locate(piece, v)
-    e, _ = _axes(_series(piece.phi[index][..., None], x)[:, 0])
-    rulings = norm(piece.patch.p.jet(v, 0)[0])
-    return _series(piece.q[index], x) + (u * rulings)[:, None] * e
-
-
-def velocities(piece: FlatPiece, u: Values, v: Values) -> Points2:
-    """Return d/dv of the flat positions, mm, from the rates: for directions, never for measuring distortion.
-
-    Where a ruling has no length, and so no direction, they are those of the ruling beside it.
-    """
-    gone = norm(piece.patch.p.jet(v, 0)[0]) <= NO_LENGTH * _scale(piece.patch)
-    v = np.where(gone, np.clip(v, BESIDE, 1.0 - BESIDE), v)
-    e, e_perp = _axes(angle(piece, v))
-    f = frames(piece.patch, v)
-    w = unit(across(f, 0.5)[1])
-    s_v = f.c0_d1 + u[:, None] * f.p_d1
-    return dot(s_v, unit(f.p))[:, None] * e + dot(s_v, w)[:, None] * e_perp
 
 
 NO_LENGTH = 1e-15
@@ -168,7 +157,7 @@ BESIDE = 2.0**-20
 """How far inside the ruling beside it is: turned by some 1e-6 rad, long enough for a direction to 1e-9."""
 
 
-def _locate(piece: FlatPiece, v: Values) -> tuple[Indices, Values]:
+def _locate(piece: RulingMap, v: Values) -> tuple[Indices, Values]:
     """Return the panel of each v and the place in it, -1 to 1."""
     index = np.clip(np.searchsorted(piece.breaks, v, side="right") - 1, 0, piece.breaks.size - 2)
     low, high = piece.breaks[index], piece.breaks[index + 1]
@@ -179,23 +168,3 @@ def _series(coefficients: Array, x: Values) -> Array:
     """Return Legendre sums, shape (n, c), of coefficients (n, 17, c) at x (n,)."""
     total: Array = np.einsum("nk,nkc->nc", legendre.legvander(x, ORDER), coefficients)
     return total
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class DevelopedEdge(ArrayValue):
-    """The flat edge u = constant of one piece as a plane curve over t in [0, 1]; `reverse` runs it from v = 1 to 0."""
-
-    piece: FlatPiece
-    u: float
-    reverse: bool = False
-
-    def at(self, t: Values) -> Points2:
-        """Return the points at t, mm."""
-        v = 1.0 - t if self.reverse else t
-        return positions(self.piece, np.full_like(v, self.u), v)
-
-    def derivative(self, t: Values) -> Points2:
-        """Return d/dt of the points, mm."""
-        v = 1.0 - t if self.reverse else t
-        sign = -1.0 if self.reverse else 1.0
-        return sign * velocities(self.piece, np.full_like(v, self.u), v)

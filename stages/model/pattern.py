@@ -25,12 +25,16 @@ class Contour:
     name: str = ""
 
 
+MarkLayer = Literal["MARK", "BEND_UP", "BEND_DOWN", "ROLL"]
+
+
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A line to be etched, not cut."""
+    """A line that is not cut: etched, or drawn for whoever bends or rolls the part."""
 
     name: str
     path: ArcPath
+    layer: MarkLayer = "MARK"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

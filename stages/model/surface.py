@@ -1,23 +1,38 @@
 """A surface as constructed, and the certificate without which nothing is unrolled."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.ruled import RuledPatch
 from stages.model.material import Part
 from stages.model.tolerances import Class
 
+Span = tuple[Fraction, Fraction]
+
 
 @dataclass(frozen=True, slots=True)
 class RuledSurface:
-    """Ruled patches that follow each other along common rulings; v runs over [i, i + 1] on patch i.
+    """Ruled patches that follow each other along common rulings.
 
     size_mm: the diagonal of the bounding box, D.
+    spans: the range of the part's v that each patch covers: [i, i + 1] on patch i unless the part has been divided.
     """
 
     part: Part
     patches: tuple[RuledPatch, ...]
     size_mm: float
+    spans: tuple[Span, ...]
+
+    def v_of(self, piece: int, local: float) -> float:
+        """Return the part's v at the place `local` in [0, 1] of a patch."""
+        low, high = self.spans[piece]
+        return float(low) + local * float(high - low)
+
+
+def whole_spans(count: int) -> tuple[Span, ...]:
+    """Return the spans of the patches of an undivided part."""
+    return tuple((Fraction(i), Fraction(i + 1)) for i in range(count))
 
 
 @dataclass(frozen=True, slots=True)

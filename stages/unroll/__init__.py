@@ -13,7 +13,8 @@ import numpy as np
 
 from stages.geometry import arcpath
 from stages.geometry.arrays import Points2
-from stages.geometry.development import Development, develop
+from stages.geometry.development import develop
+from stages.geometry.flatmap import Development
 from stages.model.pattern import Contour, FlatPattern, Mark
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.surface import Certificate, Plate, RuledSurface

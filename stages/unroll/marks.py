@@ -10,7 +10,7 @@ import numpy as np
 
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Values, dot, norm, unit
-from stages.geometry.development import Development, positions
+from stages.geometry.flatmap import Development
 from stages.geometry.ruled import RuledPatch, end_normals, frames
 from stages.model.part import MarkSpec
 from stages.model.pattern import Mark
@@ -59,5 +59,5 @@ def turning(patches: tuple[RuledPatch, ...]) -> tuple[Values, Values]:
 
 def _mark(development: Development, name: str, place: float) -> Mark:
     index = min(int(place), len(development.pieces) - 1)
-    ends = positions(development.pieces[index], np.array([0.0, 1.0]), np.full(2, place - index))
+    ends = development.pieces[index].positions(np.array([0.0, 1.0]), np.full(2, place - index))
     return Mark(name, ArcPath(ends, np.zeros(2), closed=False))

@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 
 from stages.geometry import quadrature
 from stages.geometry.arrays import Array, Points2, Values, Vector2, cross2, dot, norm, unit
-from stages.geometry.development import Development, FlatPiece, positions
+from stages.geometry.flatmap import Development, FlatPiece
 from stages.geometry.quadrature import DIFFERENTIATION, ORDER, WEIGHTS
 from stages.geometry.ruled import RuledPatch, end_normals, frames
 
@@ -60,7 +60,7 @@ def at_nodes(piece: FlatPiece) -> PieceNodes:
     """Return the flat positions at the nodes and their numerical derivatives."""
     v = quadrature.nodes(piece.breaks[:-1], piece.breaks[1:])
     widths = np.diff(piece.breaks)
-    flat = np.stack([positions(piece, np.full(v.size, u), v.ravel()).reshape(*v.shape, 2) for u in ACROSS], axis=2)
+    flat = np.stack([piece.positions(np.full(v.size, u), v.ravel()).reshape(*v.shape, 2) for u in ACROSS], axis=2)
     flat_v = np.einsum("ij,pjuc->piuc", DIFFERENTIATION, flat) * (2.0 / widths)[:, None, None, None]
     return PieceNodes(v, flat, flat_v, widths)
 
@@ -166,7 +166,7 @@ def _panel_gap(piece: FlatPiece, at: PieceNodes, index: int) -> Extreme:
     below = np.nextafter(inner, 0.0)
     for u in (0.0, 1.0):
         side = np.full(inner.size, u)
-        relative = norm(positions(piece, side, inner) - positions(piece, side, below)) / shorter
+        relative = norm(piece.positions(side, inner) - piece.positions(side, below)) / shorter
         k = int(np.argmax(relative))
         if relative[k] > worst.value:
             worst = Extreme(float(relative[k]), index + float(inner[k]), u)
@@ -216,7 +216,7 @@ def corner_angles(development: Development, nodes: list[PieceNodes]) -> float:
         for side, tangent in ((0, f.c0_d1[0]), (-1, f.c1_d1[0])):
             series = legendre.legder(quadrature.coefficients(at.flat[panel : panel + 1 or None, :, side])[0], axis=0)
             flat_v: Vector2 = np.asarray(legendre.legval(x, series))
-            ends = positions(piece, np.array([0.0, 1.0]), np.full(2, 0.0 if place == 0 else 1.0))
+            ends = piece.positions(np.array([0.0, 1.0]), np.full(2, 0.0 if place == 0 else 1.0))
             flat_u = ends[1] - ends[0]
             if norm(tangent) > NO_DIRECTION * norm(f.c0_d1[0] + f.c1_d1[0]) and norm(f.p[0]) > least:
                 on_surface = np.arctan2(norm(np.cross(f.p[0], tangent)), dot(f.p[0], tangent))

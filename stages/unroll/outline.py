@@ -6,7 +6,7 @@ import shapely
 from stages.geometry import arcpath, biarc
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Vector2, cross2, dot, norm
-from stages.geometry.development import DevelopedEdge, Development, positions
+from stages.geometry.flatmap import DevelopedEdge, Development
 from stages.geometry.plane import PlaneCurve, Segment
 from stages.model.pattern import Contour
 
@@ -14,8 +14,8 @@ from stages.model.pattern import Contour
 def corners(development: Development) -> Points2:
     """Return c0(0), c1(0), c1(1), c0(1) in the flat frame, mm."""
     u, zero, one = np.array([0.0, 1.0]), np.zeros(2), np.ones(2)
-    start = positions(development.pieces[0], u, zero)
-    end = positions(development.pieces[-1], u, one)
+    start = development.pieces[0].positions(u, zero)
+    end = development.pieces[-1].positions(u, one)
     return np.stack([start[0], start[1], end[1], end[0]])
 
 
@@ -31,7 +31,7 @@ def piece_gap(development: Development) -> float:
     """Return the largest distance between the flat end of a piece and the flat start of the next, mm."""
     u = np.array([0.0, 1.0])
     gaps = [
-        float(norm(positions(a, u, np.ones(2)) - positions(b, u, np.zeros(2))).max())
+        float(norm(a.positions(u, np.ones(2)) - b.positions(u, np.zeros(2))).max())
         for a, b in zip(development.pieces[:-1], development.pieces[1:], strict=True)
     ]
     return max(gaps, default=0.0)

@@ -96,7 +96,7 @@ def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]
     def moved(layer: str, path: ArcPath, contour: int | None = None) -> Item:
         return Item(layer, pattern.part, transform(split(path, max_bulge=machine.max_bulge), motion), contour)
 
-    marks = [moved("MARK", mark.path) for mark in pattern.marks]
+    marks = [moved(mark.layer, mark.path) for mark in pattern.marks]
     holes = [moved("CUT_INNER", pattern.inner[i].path, i + 1) for i in inner]
     return [*marks, *holes, moved("CUT_OUTER", pattern.outer.path, 0)]
 

@@ -7,7 +7,8 @@ import pytest
 
 from stages.geometry.arrays import EPS
 from stages.geometry.contours import area, length
-from stages.geometry.development import DevelopedEdge, develop
+from stages.geometry.development import develop
+from stages.geometry.flatmap import DevelopedEdge
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from tests.near import assert_near, assert_relative
 from tests.parts import RIGHT_FRUSTUM, patches

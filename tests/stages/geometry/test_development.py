@@ -14,7 +14,8 @@ from stages.errors import NoSolutionError
 from stages.geometry import development
 from stages.geometry.arrays import EPS, Array, norm
 from stages.geometry.curves import Circular, bezier, elevated
-from stages.geometry.development import DevelopedEdge, Development, develop, positions, velocities
+from stages.geometry.development import develop
+from stages.geometry.flatmap import DevelopedEdge, Development
 from stages.geometry.ruled import RuledPatch, between, part
 from tests import oracles
 from tests.near import assert_near, assert_relative
@@ -47,7 +48,7 @@ def flat(made: Development, u: Array = GRID_U, v: Array = GRID_V) -> Array:
     points = np.zeros((v.size, 2))
     for i, piece in enumerate(made.pieces):
         here = index == i
-        points[here] = positions(piece, u[here], v[here] * count - i)
+        points[here] = piece.positions(u[here], v[here] * count - i)
     return points
 
 
@@ -84,9 +85,9 @@ def test_a_mitred_pipe_unrolls_to_a_sine_curve(normal: str) -> None:
     piece = develop(patches(MITRED_CYLINDER | {"end_plane": end})).pieces[0]
     v = np.linspace(0.0, 1.0, 50)
     expected = np.stack([5.0 - float(normal) * 2.0 * np.cos(2.0 * pi * v), 4.0 * pi * v], axis=1)
-    assert_near(positions(piece, np.ones(50), v), expected, bound=1e-13, why="1e-14 of 12.6 mm")
+    assert_near(piece.positions(np.ones(50), v), expected, bound=1e-13, why="1e-14 of 12.6 mm")
     base = np.stack([np.zeros(50), 4.0 * pi * v], axis=1)
-    assert_near(positions(piece, np.zeros(50), v), base, bound=1e-13, why="1e-14 of 12.6 mm")
+    assert_near(piece.positions(np.zeros(50), v), base, bound=1e-13, why="1e-14 of 12.6 mm")
 
 
 def test_a_plane_patch_unrolls_to_itself() -> None:
@@ -163,7 +164,7 @@ def test_flat_positions_are_those_of_the_geodesic_curvature_at_40_digits(name: s
     u, v = np.tile([0.0, 0.6, 1.0], 4), np.repeat([0.1, 0.37, 0.8, 1.0], 3)
     expected = np.array([exact(a, b) for a, b in zip(u, v, strict=True)], dtype=float)
     size = float(np.abs(expected).max())
-    found = positions(develop(patches(table)).pieces[0], u, v)
+    found = develop(patches(table)).pieces[0].positions(u, v)
     assert_near(found, expected, bound=2e-14 * size, why="some 1e-14 of the size, as the module says")
 
 
@@ -241,11 +242,11 @@ def test_the_pattern_does_not_depend_on_how_the_surface_is_written(table: Table,
 def test_the_first_ruling_points_along_x_and_the_first_directrix_leaves_upwards() -> None:
     for table in (QUINTIC_TANGENT, OBLIQUE_CONE, ELLIPTIC_CYLINDER):
         piece = develop(patches(table)).pieces[0]
-        first = positions(piece, np.array([0.0, 1.0]), np.zeros(2))
+        first = piece.positions(np.array([0.0, 1.0]), np.zeros(2))
         assert_near(first[0], [0.0, 0.0], bound=1e-12, why="the origin")
         assert first[1, 0] > 0.0
         assert_near(first[1, 1], 0.0, bound=1e-12, why="along x")
-        assert velocities(piece, np.array([0.0]), np.array([0.0]))[0, 1] > 0.0
+        assert piece.velocities(np.array([0.0]), np.array([0.0]))[0, 1] > 0.0
 
 
 def test_the_last_ruling_points_along_x_where_the_first_has_no_length() -> None:
@@ -288,7 +289,7 @@ def test_parallel_rulings_stay_parallel_where_they_shrink_to_nothing() -> None:
              "end_plane": {"point": [100, 0, 0], "normal": [1, 0, 1]}}  # fmt: skip
     made = develop(patches(table))
     v = np.linspace(0.0, 1.0, 21)
-    ends = [positions(made.pieces[0], np.full(21, u), v) for u in (0.0, 1.0)]
+    ends = [made.pieces[0].positions(np.full(21, u), v) for u in (0.0, 1.0)]
     rulings = ends[1] - ends[0]
     length = (100.0 - 100.0 * np.cos(2.0 * pi * v)) / 1.3 * norm(direction)
     assert_near(norm(rulings), length, bound=1e-12, why="1e-14 of 164 mm")
@@ -329,7 +330,7 @@ def test_the_closed_forms_above_see_a_planted_fault(name: str, monkeypatch: pyte
 
 def test_a_full_circle_of_a_plane_ring_closes() -> None:
     piece = develop(patches({"kind": "cone", "radius0": 1, "radius1": 3, "height": 0, "sweep": 360})).pieces[0]
-    both = positions(piece, np.array([0.0, 0.0]), np.array([0.0, 1.0]))
+    both = piece.positions(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
     assert_near(both[0], both[1], bound=1e-13, why="1e-14 of 2 pi mm")
-    half = positions(piece, np.array([1.0]), np.array([0.5]))[0]
+    half = piece.positions(np.array([1.0]), np.array([0.5]))[0]
     assert_relative(half[:1], [-4.0], bound=1e-13, why="the far side, 1 mm beyond a centre at -1 and 3 mm from it")

@@ -1,13 +1,16 @@
 """The measurement of distortion must see every fault of the map: planted ones, one by one."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from stages.geometry import development, quadrature
 from stages.geometry.arrays import Array
-from stages.geometry.development import Development, develop
+from stages.geometry.development import develop
+from stages.geometry.flatmap import Development, FlatPiece
+from stages.geometry.ruled import RuledPatch
 from stages.unroll import measure, outline
 from tests.near import assert_near
 from tests.parts import AUMANN_CUBIC, EXAMPLE_1, EXAMPLE_2_CYLINDER, OBLIQUE_CONE, QUINTIC_TANGENT, Table, patches
@@ -80,47 +83,49 @@ def test_a_wrong_sign_or_a_small_wrong_factor_of_a_rate_is_seen(
         assert distortion(develop(patches(SHAPES[name]))) > SEEN
 
 
-def test_a_pattern_of_a_different_size_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    honest = development.positions
+@dataclass(frozen=True, slots=True)
+class Changed:
+    """A flat map whose positions are changed by a function of the plane."""
 
-    def larger(piece: object, u: Array, v: Array) -> Array:
-        return honest(piece, u, v) * (1.0 + 1e-8)
+    honest: FlatPiece
+    change: Callable[[Array], Array]
 
-    monkeypatch.setattr(measure, "positions", larger)
-    monkeypatch.setattr(outline, "positions", larger)
-    assert distortion(develop(patches(QUINTIC_TANGENT))) > SEEN
+    @property
+    def patch(self) -> RuledPatch:
+        return self.honest.patch
+
+    @property
+    def breaks(self) -> Array:
+        return self.honest.breaks
+
+    def positions(self, u: Array, v: Array) -> Array:
+        return self.change(self.honest.positions(u, v))
+
+    def velocities(self, u: Array, v: Array) -> Array:
+        return self.honest.velocities(u, v)
 
 
-def sheared(amount: float) -> Callable[[object, Array, Array], Array]:
-    honest = development.positions
+def changed(made: Development, matrix: Array) -> Development:
+    """Return the flat map followed by a linear map of the plane."""
+    return Development(tuple(Changed(piece, lambda points: points @ matrix.T) for piece in made.pieces))
 
-    def positions(piece: object, u: Array, v: Array) -> Array:
-        points = honest(piece, u, v)
-        return points + amount * np.stack([points[:, 1], 0.0 * u], axis=1)
 
-    return positions
+def test_a_pattern_of_a_different_size_is_seen() -> None:
+    assert distortion(changed(develop(patches(QUINTIC_TANGENT)), (1.0 + 1e-8) * np.eye(2))) > SEEN
 
 
 @pytest.mark.parametrize("amount", [1e-3, 1e-8])
-def test_a_shear_shows_as_strain_of_half_its_size(amount: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    (patch,) = patches(EXAMPLE_2_CYLINDER)
-    made = develop((patch,))
-    monkeypatch.setattr(measure, "positions", sheared(amount))
+def test_a_shear_shows_as_strain_of_half_its_size(amount: float) -> None:
+    made = changed(develop(patches(EXAMPLE_2_CYLINDER)), np.array([[1.0, amount], [0.0, 1.0]]))
     strain = measure.largest_strain(made, [measure.at_nodes(made.pieces[0])]).value
     assert_near(strain, amount / 2.0, bound=amount**2 + 1e-10, why="singular values 1 +- amount / 2 to first order")
 
 
-def test_a_pattern_that_only_leans_is_seen_by_the_angle_between_its_directions(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pattern_that_only_leans_is_seen_by_the_angle_between_its_directions() -> None:
     """Lengths along and across the rulings kept, the angle between them changed by 1e-6: F alone tells."""
     made = develop(patches({"kind": "cone", "radius0": 2, "radius1": 2, "height": 3, "sweep": 90}))
-    honest = development.positions
-
-    def leaning(piece: object, u: Array, v: Array) -> Array:
-        points = honest(piece, u, v)
-        return points @ np.array([[1.0, 0.0], [np.sin(1e-6), np.cos(1e-6)]])
-
-    monkeypatch.setattr(measure, "positions", leaning)
-    found = measure.metric_error(made, [measure.at_nodes(made.pieces[0])]).value
+    leaning = changed(made, np.array([[1.0, np.sin(1e-6)], [0.0, np.cos(1e-6)]]))
+    found = measure.metric_error(leaning, [measure.at_nodes(leaning.pieces[0])]).value
     assert_near(found, np.sin(1e-6), bound=1e-11, why="F over sqrt(E G) is the sine")
 
 
@@ -152,12 +157,12 @@ def test_a_torn_pattern_shows_the_gap_between_its_pieces() -> None:
     assert_near(outline.piece_gap(torn), 0.25 * 2**0.5, bound=1e-11, why="moved by a quarter in x and y")
 
 
-def test_a_corner_angle_that_changes_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_corner_angle_that_changes_is_seen() -> None:
     (patch,) = patches(QUINTIC_TANGENT)
     made = develop((patch,))
     assert_near(measure.corner_angles(made, [measure.at_nodes(made.pieces[0])]), 0.0, bound=1e-9, why="end slopes")
-    monkeypatch.setattr(measure, "positions", sheared(1e-3))
-    assert measure.corner_angles(made, [measure.at_nodes(made.pieces[0])]) > 1e-5
+    sheared = changed(made, np.array([[1.0, 1e-3], [0.0, 1.0]]))
+    assert measure.corner_angles(sheared, [measure.at_nodes(piece) for piece in sheared.pieces]) > 1e-5
 
 
 def test_a_ruling_or_an_edge_of_no_length_has_no_angle() -> None:
