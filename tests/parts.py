@@ -164,3 +164,10 @@ def aumann(points: list[list[object]], first: list[object], lam: str, mu: str) -
 AUMANN_POINTS: list[list[object]] = [[0, 0, 0], [1, 0, 0.2], [2, 1.3, 0.6], [2.5, 2, 1.8]]
 AUMANN_FIRST: list[object] = [0.1, 0.2, 1]
 AUMANN_CUBIC = aumann(AUMANN_POINTS, AUMANN_FIRST, "1.8", "2.3")
+NEXT_PATCH: Table = {
+    "p1": [9, 1, 2.5], "t1": [0.6, 0, 0.8], "n1": [0, 1, 0], "k1": 0.2, "alpha1": 3, "s1": 0.5, "g": 1.25,
+}  # fmt: skip
+STRIP: Table = {"kind": "quintic-strip", "first": EXAMPLE_2_CYLINDER, "next": [NEXT_PATCH]}
+AFTER_CONE: Table = {"p1": [1.6, 0.9, 2.2], "t1": [0.8, 0.6, 0], "n1": [0.6, -0.8, 0], "k1": 0.3, "alpha1": 0.6,
+                     "beta1": 0.1}  # fmt: skip
+CONE_STRIP: Table = {"kind": "quintic-strip", "first": EXAMPLE_3 | {"fraction": [0, 0.5]}, "next": [AFTER_CONE]}

@@ -7,14 +7,12 @@ What a theorem of the paper assumes is computed as a metric, never taken for gra
 developable is not decided here: `verify` does that for every kind alike.
 """
 
-from itertools import pairwise
-
 import numpy as np
 
 from stages.construct.assemble import patches_of
+from stages.construct.joins import join_metrics, join_rows, joins_of
 from stages.construct.plates import plate
 from stages.geometry.arrays import norm
-from stages.geometry.joins import join
 from stages.geometry.planarity import is_planar
 from stages.geometry.ruled import RuledPatch, at
 from stages.model.material import Part
@@ -33,10 +31,12 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
     built = patches_of(part.spec.surface, tol)
     size = size_of(built.patches) if built.patches else 0.0
     findings = [*built.findings, *_too_small(built.patches, size)]
-    metrics = [*built.metrics(size)]
+    metrics, detail = [*built.metrics(size)], dict(built.detail)
     if built.patches and size > 0.0:
-        metrics += [*_planar(built.patches), *_joins(built.patches, size, tol)]
-    report = StageReport("construct", part.name, tuple(metrics), tuple(findings), built.detail)
+        joins = joins_of(built.patches)
+        metrics += [*_planar(built.patches), *join_metrics(joins, size, tol)]
+        detail |= _with_joins(built.detail, join_rows(joins, size, tol))
+    report = StageReport("construct", part.name, tuple(metrics), tuple(findings), detail)
     surface = RuledSurface(part, built.patches, size, whole_spans(len(built.patches))) if report.passed else None
     return Outcome(surface, report)
 
@@ -61,24 +61,9 @@ def _planar(patches: tuple[RuledPatch, ...]) -> list[Metric]:
     return [Metric("planar", planar, "", "proved" if proved else "sampled")]
 
 
-def _joins(patches: tuple[RuledPatch, ...], size: float, tol: Tolerances) -> list[Metric]:
-    """Return gap, angle of normals and jump of curvature (times D), the worst of all joins."""
-    joins = [(i, join(a, b)) for i, (a, b) in enumerate(pairwise(patches), start=1)]
-    if not joins:
-        return []
-    gap = max(joins, key=lambda item: item[1].gap_mm)
-    turn = max(joins, key=lambda item: item[1].normal_rad)
-    jumps = [(i, found.jump) for i, found in joins if found.jump is not None]
-    jump = max(jumps, key=lambda item: item[1], default=None)
-    return [
-        Metric("join_gap_mm", gap[1].gap_mm, "mm", "sampled", tol.join_mm, {"v": gap[0]}),
-        Metric("join_normal_deg", float(np.degrees(turn[1].normal_rad)), "deg", "sampled", None, {"v": turn[0]}),
-        Metric(
-            "join_curvature_jump",
-            None if jump is None else jump[1] * size,
-            "1/D",
-            "sampled",
-            None,
-            None if jump is None else {"v": jump[0]},
-        ),
-    ]
+def _with_joins(detail: dict[str, object], rows: list[dict[str, object]]) -> dict[str, object]:
+    """Return the joins as measured, beside what a theorem says of them."""
+    theorem = detail.get("joins")
+    if isinstance(theorem, list):
+        rows = [row | said for row, said in zip(rows, theorem, strict=True)]
+    return {"joins": rows} if rows else {}

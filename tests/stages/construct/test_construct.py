@@ -12,7 +12,9 @@ from stages.model.surface import Plate, RuledSurface
 from stages.model.tolerances import Tolerances
 from tests.near import assert_near, assert_relative
 from tests.parts import (
+    AFTER_CONE,
     CIRCLE,
+    CONE_STRIP,
     ELLIPTIC_CYLINDER,
     EXAMPLE_1,
     EXAMPLE_2_CYLINDER,
@@ -20,21 +22,16 @@ from tests.parts import (
     EXAMPLE_3,
     EXAMPLE_3_PRINTED,
     MITRED_CYLINDER,
+    NEXT_PATCH,
     OBLIQUE_CONE,
     QUINTIC_TANGENT,
     RIGHT_FRUSTUM,
+    STRIP,
     Table,
     passage,
     patches,
 )
 
-NEXT_PATCH: Table = {
-    "p1": [9, 1, 2.5], "t1": [0.6, 0, 0.8], "n1": [0, 1, 0], "k1": 0.2, "alpha1": 3, "s1": 0.5, "g": 1.25,
-}  # fmt: skip
-STRIP: Table = {"kind": "quintic-strip", "first": EXAMPLE_2_CYLINDER, "next": [NEXT_PATCH]}
-AFTER_CONE: Table = {"p1": [1.6, 0.9, 2.2], "t1": [0.8, 0.6, 0], "n1": [0.6, -0.8, 0], "k1": 0.3, "alpha1": 0.6,
-                     "beta1": 0.1}  # fmt: skip
-CONE_STRIP: Table = {"kind": "quintic-strip", "first": EXAMPLE_3 | {"fraction": [0, 0.5]}, "next": [AFTER_CONE]}
 PLATE: Table = {
     "kind": "flat", "outline": {"polyline": [[0, 0], [30, 0], [30, 20], [0, 20], [0, 0]]},
     "holes": [{"circle": {"center": [10, 10], "radius": 3}}],
