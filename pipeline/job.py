@@ -7,6 +7,7 @@ from hashlib import sha256
 from pipeline.decode import canonical
 from pipeline.jobfile import JobFile, MaterialTable, ReadJob, Rotations
 from pipeline.materials import look_up
+from pipeline.provenance import Limit, limits_of
 from stages.model.cutfile import Machine
 from stages.model.material import Material, Part
 from stages.model.sheet import NestOptions, Sheet
@@ -19,6 +20,8 @@ class Job:
 
     name: of the job, or of its file.
     digest: sha256 of the values of the job file and of the drawings it points at; layout and comments do not count.
+    limits: what the parts are held against, and who said so.
+    inputs: name and sha256 of the job file and of every drawing that it points at.
     notes: what was assumed where the job file leaves a choice.
     """
 
@@ -34,6 +37,8 @@ class Job:
     revision: str | None = None
     units: str = "mm"
     digest: str = ""
+    limits: tuple[Limit, ...] = ()
+    inputs: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -54,6 +59,8 @@ def job_of(read: ReadJob) -> Job:
         revision=tables.job.revision,
         units=tables.units,
         digest=sha256(canonical(tables)).hexdigest(),
+        limits=limits_of(tables),
+        inputs=read.inputs,
         notes=(*read.notes, *material_notes),
     )
 

@@ -8,6 +8,7 @@ this version does what it says.
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path as FilePath
 from typing import Annotated, Literal
 
@@ -15,7 +16,7 @@ from msgspec import Meta, field
 
 from pipeline.decode import Complaint, Walk, decode
 from pipeline.locate import Place, nearest, places
-from pipeline.parse import DEEP, SET, is_json, override, parse, read_text
+from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, text_of
 from pipeline.paths import Path, written
 from pipeline.sources import Sources
 from pipeline.units import JOB_UNITS
@@ -163,16 +164,21 @@ def repeated(table: str, key: str, names: Sequence[str]) -> Iterator[Trouble]:
 
 @dataclass(frozen=True, slots=True)
 class ReadJob:
-    """A job file as read: its tables, where it lies, and what was noted on the way."""
+    """A job file as read: its tables, where it lies, and what was noted on the way.
+
+    inputs: name and sha256 of the job file and of every drawing that it points at.
+    """
 
     tables: JobFile
     file: FilePath
     notes: tuple[str, ...]
+    inputs: tuple[tuple[str, str], ...]
 
 
 def read(file: FilePath, settings: Iterable[str] = ()) -> ReadJob:
     """Return the job; `BadInputError` with every problem, each with its place."""
-    text = read_text(file)
+    content = read_bytes(file)
+    text = text_of(content, file)
     raw = parse(text, file)
     set_paths = override(raw, settings)
     walk = Walk(unit=_unit(raw))
@@ -184,7 +190,8 @@ def read(file: FilePath, settings: Iterable[str] = ()) -> ReadJob:
         raise BadInputError(Problem(DEEP, file=str(file))) from None
     if tables is None:
         raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
-    return ReadJob(tables, file, tuple(sources.notes))
+    inputs = ((file.name, sha256(content).hexdigest()), *sources.digests)
+    return ReadJob(tables, file, tuple(sources.notes), inputs)
 
 
 def _unit(raw: dict[str, object]) -> str:

@@ -24,8 +24,8 @@ _LONG_NUMBER = re.compile(r"[0-9A-Fa-f_]{4000,}")
 DEEP = "tables or arrays are nested too deeply"
 
 
-def read_text(file: FilePath) -> str:
-    """Return the text of a job file; `BadInputError` if it is not there, too large or not UTF-8."""
+def read_bytes(file: FilePath) -> bytes:
+    """Return the bytes of a job file; `BadInputError` if it is not there or too large."""
     try:
         with file.open("rb") as stream:
             content = stream.read(LARGEST_FILE + 1)
@@ -35,6 +35,11 @@ def read_text(file: FilePath) -> str:
     if len(content) > LARGEST_FILE:
         too_large = f"larger than {LARGEST_FILE // 10**6} MB"
         raise BadInputError(Problem(too_large, hint="is this a job file?", file=str(file)))
+    return content
+
+
+def text_of(content: bytes, file: FilePath) -> str:
+    """Return the text of a job file; `BadInputError` with the place of what is not UTF-8."""
     try:
         return content.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:

@@ -6,6 +6,7 @@ An outline must be closed; the holes of a plate are all closed contours of their
 """
 
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
@@ -29,12 +30,13 @@ LARGEST_DRAWING = 100_000_000
 
 @dataclass(slots=True)
 class Sources:
-    """The drawings of one job file, each read once."""
+    """The drawings of one job file, each read once, and their names and sha256."""
 
     folder: FilePath
     unit: str
     notes: list[str] = field(default_factory=list)
     drawings: dict[FilePath, "Drawing"] = field(default_factory=dict)
+    digests: list[tuple[str, str]] = field(default_factory=list)
 
     def resolve(self, table: Table, path: Path) -> Table | Several:
         """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
@@ -71,6 +73,7 @@ class Sources:
         file = self.folder / name
         if file not in self.drawings:
             self.drawings[file] = _read(file, name)
+            self.digests.append((name, sha256(file.read_bytes()).hexdigest()))
         return self.drawings[file]
 
     def _unit(self, drawing: "Drawing", name: str) -> str:

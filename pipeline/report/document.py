@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from pipeline import __version__
 from pipeline.files import FileNames, file_names
 from pipeline.job import Job
+from pipeline.provenance import environment, provenance
 from pipeline.report.figures import Figures, figures, total
 from pipeline.run import JobResult, PartRun, Step
 from pipeline.store import digest
@@ -39,6 +40,7 @@ def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
         "schema": SCHEMA,
         "status": result.status,
         "job": _job(result.job),
+        "provenance": provenance(result.job.digest, result.job.limits),
         "parts": [_part(run, measures.get(run.part.name)) for run in result.parts],
         "nest": {
             **_step(result.nest),
@@ -49,7 +51,12 @@ def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
             "status": _write_status(result),
             "files": [{"path": path, "sha256": digest(content)} for path, content in files.items()],
         },
-        "run": {"version": __version__, "seconds": dict(result.seconds)},
+        "run": {
+            "version": __version__,
+            "seconds": dict(result.seconds),
+            "inputs": [{"name": name, "sha256": found} for name, found in result.job.inputs],
+            "environment": environment(),
+        },
     }
 
 
