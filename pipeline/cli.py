@@ -102,10 +102,11 @@ def kinds() -> None:
 
 @cli.command()
 def materials() -> None:
-    """List the materials with the source of every value."""
-    from pipeline.materials import listing
+    """List the materials and the cutting processes with the source of every value."""
+    from pipeline import materials as sheets
+    from pipeline import processes
 
-    click.echo(listing())
+    click.echo(f"{sheets.listing()}\n\nCutting processes\n{processes.listing()}")
 
 
 def load(job: Path, settings: Sequence[str], *, quiet: bool) -> "Job":

@@ -19,8 +19,9 @@ from msgspec import inspect
 from pipeline.paths import Path, parsed
 from pipeline.standins import stand_in
 from pipeline.typenames import fixed_name, quoted, type_name
-from pipeline.units import UnreadableError, describe, quantity
+from pipeline.units import UnreadableError, coordinate_of, describe, quantity
 from stages.model.curves import Table
+from stages.model.scalars import Coordinate, Number
 
 T = TypeVar("T", bound=Table)
 
@@ -119,6 +120,9 @@ def _value(walk: Walk, sort: inspect.Type, raw: object, path: Path) -> object:
             return _fixed_array(walk, sort, raw, path)
         case inspect.CustomType():
             return _quantity(walk, sort, raw, path)
+        case inspect.FloatType():
+            number = _quantity(walk, inspect.CustomType(Number), raw, path)
+            return float(number) if isinstance(number, Number) else number
         case _:
             return _leaf(walk, sort, raw, path)
 
@@ -235,7 +239,7 @@ def _fixed_array(walk: Walk, sort: inspect.TupleType, raw: object, path: Path) -
 def _quantity(walk: Walk, sort: inspect.CustomType, raw: object, path: Path) -> object:
     """Return a length, curvature, angle or plain number."""
     try:
-        return quantity(sort.cls, raw, walk.unit)
+        return coordinate_of(raw, walk.unit) if sort.cls is Coordinate else quantity(sort.cls, raw, walk.unit)
     except UnreadableError as error:
         return walk.wrong(sort, path, error.message, error.hint)
 
@@ -278,6 +282,8 @@ def _has_shape(sort: inspect.Type, raw: object) -> bool:
             return isinstance(raw, int) and not isinstance(raw, bool)
         case inspect.LiteralType():
             return any(type(raw) is type(value) for value in sort.values)
+        case inspect.FloatType():
+            return not isinstance(raw, bool | str | list | tuple | Mapping | None)
         case _:
             return False
 

@@ -21,9 +21,9 @@ from ezdxf.entities.polyline import Polyline
 from ezdxf.entities.spline import Spline
 from ezdxf.math import BSpline, Vec3
 
-from pipeline.units import UnreadableError, quantity
+from pipeline.units import UnreadableError, coordinate_of, quantity
 from stages.model.curves import ArcSpec, BSplineSpec, CircleSpec, CurveSpec, EllipseSpec
-from stages.model.scalars import Angle, Direction, Length, Number, Point
+from stages.model.scalars import Angle, Coordinate, Direction, Number
 
 XYZ = tuple[float, float, float]
 
@@ -92,11 +92,11 @@ def _called(entity: DXFEntity) -> str:
     return f"{entity.dxftype()} #{entity.dxf.handle} on the layer {entity.dxf.layer}"
 
 
-def _length(value: float, unit: str) -> Length:
-    return quantity(Length, float(value), unit)
+def _length(value: float, unit: str) -> Coordinate:
+    return coordinate_of(float(value), unit)
 
 
-def _point(point: Vec3, unit: str) -> Point:
+def _point(point: Vec3, unit: str) -> tuple[Coordinate, Coordinate, Coordinate]:
     return _length(point.x, unit), _length(point.y, unit), _length(point.z, unit)
 
 
@@ -185,7 +185,7 @@ def _circle(entity: Circle, unit: str) -> Piece:
     return Piece((CurveSpec(circle=spec),), _mm(centre, unit), _mm(centre, unit), closed=True)
 
 
-def _radius(entity: Circle, unit: str) -> Length:
+def _radius(entity: Circle, unit: str) -> Coordinate:
     radius = _length(entity.dxf.radius, unit)
     if radius <= 0:
         raise UnreadableError(f"{_called(entity)} has the radius {float(radius):g}", "a radius must be above 0")

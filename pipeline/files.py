@@ -12,7 +12,7 @@ from pipeline.job import Job
 from pipeline.store import safe_names
 
 if TYPE_CHECKING:
-    from pipeline.run import JobResult
+    from pipeline.run import JobResult, PartRun
     from stages.model.pattern import FlatPattern
     from stages.model.sheet import Nesting, SheetLayout
 
@@ -41,9 +41,9 @@ class FileNames:
         return replace(layout, sheet=replace(layout.sheet, id=self.stock[layout.sheet.id]), placements=placements)
 
 
-def file_names(job: Job) -> FileNames:
-    """Return the names of a job's parts and stock in drawings and files."""
-    return FileNames(safe_names(part.name for part in job.parts), safe_names(sheet.id for sheet in job.stock))
+def file_names(parts: "Sequence[PartRun]", job: Job) -> FileNames:
+    """Return the names of a job's parts, the blanks of divided ones each by itself, and stock in drawings and files."""
+    return FileNames(safe_names(run.part.name for run in parts), safe_names(sheet.id for sheet in job.stock))
 
 
 def drawings(result: "JobResult") -> dict[str, bytes]:

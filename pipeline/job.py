@@ -5,11 +5,14 @@ from fractions import Fraction
 from hashlib import sha256
 
 from pipeline.decode import canonical
-from pipeline.jobfile import JobFile, MaterialTable, ReadJob, Rotations
-from pipeline.materials import look_up
+from pipeline.jobfile import JobFile, MaterialTable, ProcessTable, ReadJob, Rotations
+from pipeline.materials import Sourced, look_up
+from pipeline.processes import limits
 from pipeline.provenance import Limit, limits_of
 from stages.model.cutfile import Machine
+from stages.model.kfactor import KFactor
 from stages.model.material import Material, Part
+from stages.model.process import Process
 from stages.model.sheet import NestOptions, Sheet
 from stages.model.tolerances import Tolerances
 
@@ -29,6 +32,7 @@ class Job:
     parts: tuple[Part, ...]
     material: Material
     stock: tuple[Sheet, ...] = ()
+    process: Process = field(default_factory=Process)
     options: NestOptions = field(default_factory=NestOptions)
     tolerances: Tolerances = field(default_factory=Tolerances)
     machine: Machine = field(default_factory=Machine)
@@ -46,10 +50,12 @@ def job_of(read: ReadJob) -> Job:
     """Return the job that a job file describes."""
     tables = read.tables
     material, material_notes = _material(tables.material)
+    process, process_notes = _process(tables.process, material.thickness_mm)
     return Job(
         name=tables.job.name or read.file.stem,
-        parts=tuple(Part(spec, material) for spec in tables.part),
+        parts=tuple(Part(spec, material, process) for spec in tables.part),
         material=material,
+        process=process,
         stock=_stock(tables),
         options=_options(tables),
         tolerances=_tolerances(tables),
@@ -61,7 +67,7 @@ def job_of(read: ReadJob) -> Job:
         digest=sha256(canonical(tables)).hexdigest(),
         limits=limits_of(tables),
         inputs=read.inputs,
-        notes=(*read.notes, *material_notes),
+        notes=(*read.notes, *material_notes, *process_notes),
     )
 
 
@@ -73,10 +79,37 @@ def _material(table: MaterialTable) -> tuple[Material, tuple[str, ...]]:
     if radius is None and row is not None and thickness is not None:
         radius = row.bend_radius_ratio.value * thickness
     density, strain = _float(table.density), _float(table.max_strain)
+    strength, modulus = _float(table.yield_strength), _float(table.youngs_modulus)
     if row is not None:
         density = row.density.value if density is None else density
         strain = row.max_strain.value if strain is None else strain
-    return Material(table.name, thickness, density, radius, strain), notes
+        strength = _or_table(strength, row.yield_strength)
+        modulus = _or_table(modulus, row.youngs_modulus)
+    return Material(table.name, thickness, density, radius, strain, _k_factor(table), strength, modulus), notes
+
+
+def _or_table(given: float | None, sourced: Sourced | None) -> float | None:
+    return given if given is not None or sourced is None else sourced.value
+
+
+def _k_factor(table: MaterialTable) -> KFactor:
+    """Return the rule for K, as the job gives it or that of rolled work."""
+    if table.k_factor is None:
+        return KFactor()
+    if isinstance(table.k_factor, str):
+        return KFactor(table.k_factor, given=True)
+    if isinstance(table.k_factor, tuple):
+        return KFactor(tuple((float(ratio), float(k)) for ratio, k in table.k_factor), given=True)
+    return KFactor(float(table.k_factor), given=True)
+
+
+def _process(table: ProcessTable, thickness: float | None) -> tuple[Process, tuple[str, ...]]:
+    """Return the process with the limits that it sets at that thickness, and a note where that is not known."""
+    found = {f"{name}_mm": limit.value for name, limit in limits(table, thickness).items()}
+    if table.type is None:
+        return Process("", **found), ()
+    note = f"no thickness is known: the limits of {table.type} are those of the thinnest sheet"
+    return Process(table.type, **found), (note,) if thickness is None else ()
 
 
 def _float(value: Fraction | None) -> float | None:

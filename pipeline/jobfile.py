@@ -30,6 +30,7 @@ from stages.model.tolerances import Class, Tolerances
 DEFAULTS = Tolerances()
 Text = Annotated[str, Meta(max_length=200)]
 Rotations = Literal["free"] | tuple[Angle, ...]
+KRows = Annotated[tuple[tuple[Number, Number], ...], Meta(min_length=1)]
 
 
 def length_mm(text: float) -> Length:
@@ -49,6 +50,9 @@ class MaterialTable(Table, frozen=True, kw_only=True):
     """The sheet: a name of the table (`planish materials`), values of one's own, or both.
 
     density in kg/m3; bend_radius_min: smallest inside radius; max_strain: of the outer fibre, as a fraction.
+    k_factor: distance of the neutral line from the inside face over the thickness: one value, "din6935", or rows
+        [inside radius / thickness, K] with straight lines between; absent: 0.5, rolled work.
+    yield_strength in MPa, youngs_modulus in GPa: for an estimate of springback.
     """
 
     name: Text = ""
@@ -56,11 +60,52 @@ class MaterialTable(Table, frozen=True, kw_only=True):
     density: Number | None = None
     bend_radius_min: Length | None = None
     max_strain: Number | None = None
+    k_factor: Literal["din6935"] | float | KRows | None = None
+    yield_strength: Number | None = None
+    youngs_modulus: Number | None = None
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield values that no sheet has."""
-        yield from not_positive(self, "thickness", "density", "max_strain")
+        yield from not_positive(self, "thickness", "density", "max_strain", "yield_strength", "youngs_modulus")
         yield from negatives(self, "bend_radius_min")
+        if self.k_factor is not None and not isinstance(self.k_factor, str):
+            yield from k_factor_troubles(self.k_factor)
+
+
+def k_factor_troubles(k_factor: float | KRows) -> Iterator[Trouble]:
+    """Yield values of K outside 0 to 1/2, and rows that are not in the order of r/t."""
+    if isinstance(k_factor, float):
+        yield from _unlikely_k("k_factor", k_factor)
+        return
+    for i, (ratio, k) in enumerate(k_factor):
+        yield from _unlikely_k(f"k_factor[{i}][1]", k)
+        if ratio < 0 or (i > 0 and ratio <= k_factor[i - 1][0]):
+            yield Trouble(f"k_factor[{i}][0]", f"r/t = {float(ratio):g}", "from 0 on, each above the one before")
+
+
+def _unlikely_k(key: str, k: float | Number) -> Iterator[Trouble]:
+    if not 0 <= k <= LARGEST_K:
+        yield Trouble(key, f"K = {float(k):g}", "from 0 to 0.5; the k of DIN 6935 is twice this K")
+
+
+LARGEST_K = 0.5
+"""A neutral line beyond the middle of the sheet would be stretched by bending on both of its sides."""
+
+
+class ProcessTable(Table, frozen=True, kw_only=True):
+    """How the sheet is cut; min_hole, min_web: narrowest hole, least material between two cuts, if not the table's.
+
+    kerf: width of the cut, for the report: contours are written as they are, without an offset.
+    """
+
+    type: Literal["laser", "plasma", "waterjet", "oxy-fuel", "knife", "die"] | None = None
+    kerf: Length | None = None
+    min_hole: Length | None = None
+    min_web: Length | None = None
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield widths below nothing."""
+        yield from negatives(self, "kerf", "min_hole", "min_web")
 
 
 class StockTable(Table, frozen=True, kw_only=True):
@@ -138,6 +183,7 @@ class JobFile(Table, frozen=True, kw_only=True):
     units: Literal["mm", "cm", "m", "in"] = "mm"
     job: JobTable = JobTable()
     material: MaterialTable = MaterialTable()
+    process: ProcessTable = ProcessTable()
     stock: tuple[StockTable, ...] = ()
     nest: NestTable = field(default_factory=NestTable)
     tolerance: ToleranceTable = field(default_factory=ToleranceTable)
@@ -148,9 +194,23 @@ class JobFile(Table, frozen=True, kw_only=True):
         """Yield names that occur twice: they become file names, so upper and lower case are the same."""
         yield from repeated("part", "name", [part.name for part in self.part])
         yield from repeated("stock", "id", [stock.id for stock in self.stock])
+        yield from taken_by_blanks(self.part)
         for i, part in enumerate(self.part):
+            if part.face != "middle" and self.material.thickness is None:
+                hint = "give material.thickness: the neutral surface lies that far in the sheet"
+                yield Trouble(f"part[{i}].face", f'"{part.face}" of a sheet of no known thickness', hint)
             if part.rotations == ():
                 yield Trouble(f"part[{i}].rotations", "no angle is allowed", 'list at least one, or write "free"')
+
+
+def taken_by_blanks(parts: Sequence[PartSpec]) -> Iterator[Trouble]:
+    """Yield the names that a blank of a divided part may take, `<part>.<n>`."""
+    divided = {part.name.casefold() for part in parts if part.cut == "auto"}
+    for i, part in enumerate(parts):
+        whole, _, number = part.name.casefold().rpartition(".")
+        if number.isdecimal() and whole in divided:
+            hint = "choose a name that does not end in a dot and a number"
+            yield Trouble(f"part[{i}].name", f'"{part.name}" may be a blank of "{whole}"', hint)
 
 
 def repeated(table: str, key: str, names: Sequence[str]) -> Iterator[Trouble]:

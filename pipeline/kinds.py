@@ -15,10 +15,11 @@ from pipeline.jobfile import JobFile
 from pipeline.typenames import type_name
 from stages.errors import BadInputError, Problem
 from stages.model.part import KINDS
-from stages.model.scalars import Angle, Curvature, Length, Number
+from stages.model.scalars import Angle, Coordinate, Curvature, Length, Number
 
 PATTERNS = {
     Length: "a length: a number in the units of the job, or a text with its unit such as '1/8 in'",
+    Coordinate: "a length as above; two of them are the pure numbers u, v in places on a curved part",
     Curvature: "a curvature: a number in 1/units of the job, or a text with its unit such as '0.02 1/mm'",
     Number: "a number, or a text such as '1/3'",
     Angle: "an angle in degrees, or a text such as '0.5 rad'",

@@ -24,7 +24,7 @@ class MaterialRow:
     """One material.
 
     density in kg/m3; bend_radius_ratio: smallest inside radius over thickness; max_strain of the outer fibre, as a
-    fraction.
+    fraction; yield_strength in MPa and youngs_modulus in GPa: None for what is not elastic.
     """
 
     name: str
@@ -32,9 +32,14 @@ class MaterialRow:
     density: Sourced
     bend_radius_ratio: Sourced
     max_strain: Sourced
+    yield_strength: Sourced | None = None
+    youngs_modulus: Sourced | None = None
 
 
-VALUES = {"density": "kg/m3", "bend_radius_ratio": "x thickness", "max_strain": ""}
+VALUES = {
+    "density": "kg/m3", "bend_radius_ratio": "x thickness", "max_strain": "", "yield_strength": "MPa",
+    "youngs_modulus": "GPa",
+}  # fmt: skip
 """The values of a row and their units."""
 
 
@@ -43,7 +48,7 @@ def table() -> tuple[MaterialRow, ...]:
     """Return all rows in the order of the file."""
     text = files("pipeline").joinpath("data", "materials.toml").read_text("utf-8")
     return tuple(
-        MaterialRow(row["name"], tuple(row["also"]), **{key: _sourced(row[key]) for key in VALUES})
+        MaterialRow(row["name"], tuple(row["also"]), **{key: _sourced(row[key]) for key in VALUES if key in row})
         for row in tomllib.loads(text)["material"]
     )
 
@@ -75,6 +80,7 @@ def listing() -> str:
 def _row_lines(row: MaterialRow) -> list[str]:
     lines = [f"{row.name}   (also: {', '.join(row.also)})"]
     for key, unit in VALUES.items():
-        sourced: Sourced = getattr(row, key)
-        lines.append(f"  {key:18} {f'{sourced.value:g} {unit}'.rstrip():16} {sourced.source}")
+        sourced: Sourced | None = getattr(row, key)
+        if sourced is not None:
+            lines.append(f"  {key:18} {f'{sourced.value:g} {unit}'.rstrip():16} {sourced.source}")
     return lines

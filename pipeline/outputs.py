@@ -20,7 +20,7 @@ def pictures(result: JobResult) -> dict[str, bytes]:
         return {}
     from pipeline.report.pictures import part_picture, sheet_picture
 
-    names = file_names(result.job)
+    names = file_names(result.parts, result.job)
     drawn: dict[str, bytes] = {}
     for run in result.parts:
         if run.surface is not None:

@@ -18,6 +18,7 @@ from platform import python_version
 from pipeline import __version__
 from pipeline.jobfile import JobFile, MaterialTable, ToleranceTable
 from pipeline.materials import MaterialRow, look_up
+from pipeline.processes import limits
 from stages.model.tolerances import STRAIN_LIMIT, WARP_LIMIT_DEG, Tolerances
 
 LIBRARIES = ("ezdxf", "numpy", "scipy", "shapely", "spyrrow")
@@ -97,7 +98,13 @@ def _digest(file: Traversable) -> str:
 def limits_of(job: JobFile) -> tuple[Limit, ...]:
     """Return every number that the parts of a job are held against, with its source."""
     row = look_up(job.material.name)[0] if job.material.name else None
-    return (*_tolerances(job.tolerance), *_material(job.material, row))
+    return (*_tolerances(job.tolerance), *_material(job.material, row), *_process(job))
+
+
+def _process(job: JobFile) -> Iterator[Limit]:
+    thickness = None if job.material.thickness is None else float(job.material.thickness)
+    for name, found in limits(job.process, thickness).items():
+        yield Limit(name, found.value, "mm", found.source)
 
 
 def _tolerances(table: ToleranceTable) -> Iterator[Limit]:

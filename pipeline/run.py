@@ -44,7 +44,7 @@ class Step(Generic[T_co]):
 
 @dataclass(frozen=True, slots=True)
 class PartRun:
-    """One part through its stages."""
+    """One part through its stages, or one blank of a divided part: then `part` and `surface` are the blank's."""
 
     part: "Part"
     steps: tuple[Step[object], ...]
@@ -94,21 +94,28 @@ class Runner:
     def step(
         self, stage: Stage, subject: str, call: Callable[P, Outcome[T | None]], *args: P.args, **kw: P.kwargs
     ) -> Step[T]:
-        """Return the step that a call makes; whatever it raises but `NoSolutionError` names part and stage."""
-        start = perf_counter()
+        """Return the step that a call makes; a stage that raises `NoSolutionError` has failed."""
         try:
-            outcome = call(*args, **kw)
+            outcome = self.timed(stage, subject, call, *args, **kw)
             passed = outcome.product is not None and outcome.report.passed
             step: Step[T] = Step("pass", outcome.report, outcome.product) if passed else Step("fail", outcome.report)
         except NoSolutionError as error:
             step = Step("fail", fell_short(stage, subject, error), short=True)
+        self.listener(step)
+        return step
+
+    def timed(self, stage: Stage, subject: str, call: Callable[P, T], *args: P.args, **kw: P.kwargs) -> T:
+        """Return what a call returns, its seconds counted; an error but `NoSolutionError` names part and stage."""
+        start = perf_counter()
+        try:
+            return call(*args, **kw)
+        except NoSolutionError:
+            raise
         except BaseException as error:
             error.add_note(f"part '{subject}', stage {stage}")
             raise
         finally:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - start
-        self.listener(step)
-        return step
 
 
 def fell_short(stage: Stage, subject: str, error: NoSolutionError) -> StageReport:
@@ -128,7 +135,7 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
     Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
     """
     runner = Runner(listener)
-    parts = tuple(run_part(runner, part, job) for part in job.parts)
+    parts = tuple(run for part in job.parts for run in run_part(runner, part, job))
     patterns = [run.pattern for run in parts if run.pattern is not None]
     nest: Step[Nesting] = skipped("nest", job.name)
     if job.stock and len(patterns) == len(parts):
@@ -139,24 +146,29 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
     if patterns:
         from stages.write import write as write_stage
 
-        names = file_names(job)
+        names = file_names(parts, job)
         named = names.patterns(patterns)
         write = runner.step("write", job.name, write_stage, named, names.nesting(nest.product), job.machine)
     return JobResult(job, parts, nest, write, runner.seconds)
 
 
-def run_part(runner: Runner, part: "Part", job: Job) -> PartRun:
-    """Return one part as far as it gets."""
+def run_part(runner: Runner, part: "Part", job: Job) -> "tuple[PartRun, ...]":
+    """Return one part as far as it gets: one run, or one for each blank that it is divided into."""
     from stages.construct import construct
     from stages.unroll import unroll
+    from stages.unroll.divide import blanks
     from stages.verify import verify
 
     name, tol = part.name, job.tolerances
     made: Step[Surface] = runner.step("construct", name, construct, part, tol)
     proved: Step[Certificate] = skipped("verify", name)
-    flat: Step[FlatPattern] = skipped("unroll", name)
     if made.product is not None:
         proved = runner.step("verify", name, verify, made.product, tol)
-    if proved.product is not None:
-        flat = runner.step("unroll", name, unroll, proved.product, tol)
-    return PartRun(part, (made, proved, flat), made.product, flat.product)
+    if proved.product is None:
+        return (PartRun(part, (made, proved, skipped("unroll", name)), made.product, None),)
+    runs = []
+    for blank in runner.timed("unroll", name, blanks, proved.product, tol):
+        piece = blank.surface.part
+        flat: Step[FlatPattern] = runner.step("unroll", piece.name, unroll, blank, tol)
+        runs.append(PartRun(piece, (made, proved, flat), blank.surface, flat.product))
+    return tuple(runs)

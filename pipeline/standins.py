@@ -4,9 +4,11 @@ A stand-in keeps the rules that its table has: lengths are positive and large, n
 curvatures are 0.  No stand-in leaves the decoder: one complaint anywhere and there is no job.
 """
 
+from fractions import Fraction
+
 from msgspec import inspect
 
-from stages.model.scalars import Angle, Curvature, Length, Number
+from stages.model.scalars import Angle, Coordinate, Curvature, Length, Number, coordinate
 
 LARGE_MM = 10**6
 """Larger than any gap or edge that is held against a sheet."""
@@ -41,6 +43,9 @@ def stand_in(sort: inspect.Type, serial: int) -> object:
 def _quantity(sort: type, serial: int) -> object:
     if sort is Length:
         return Length(LARGE_MM + serial)
+    if sort is Coordinate:
+        # as a u or v it is on the surface
+        return coordinate(Fraction(LARGE_MM + serial), Fraction(1, 2 + serial))
     if sort is Curvature:
         return Curvature(0)
     return SMALL_DEG * (1 + serial) if sort is Angle else Number(1 + serial)

@@ -4,10 +4,11 @@ from collections.abc import Iterable, Sequence
 
 from msgspec import inspect
 
-from stages.model.scalars import Angle, Curvature, Length, Number
+from stages.model.scalars import Angle, Coordinate, Curvature, Length, Number
 
 QUANTITY_NAMES: dict[type, str] = {
     Length: "a length",
+    Coordinate: "a length",
     Curvature: "a curvature",
     Number: "a number",
     Angle: "an angle in degrees",
@@ -34,6 +35,8 @@ def type_name(sort: inspect.Type) -> str:
             return fixed_name(sort.item_types)
         case inspect.CustomType():
             return QUANTITY_NAMES[sort.cls]
+        case inspect.FloatType():
+            return "a number"
         case inspect.LiteralType():
             return " or ".join(quoted(sort.values))
         case inspect.IntType():

@@ -14,7 +14,7 @@ from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from typing import TypeVar
 
-from stages.model.scalars import Angle, Curvature, Length, Number
+from stages.model.scalars import Angle, Coordinate, Curvature, Length, Number, coordinate
 
 Quantity = TypeVar("Quantity", Length, Curvature, Number, Angle)
 Dimension = type[Length] | type[Curvature] | type[Number] | type[Angle]
@@ -80,6 +80,15 @@ def quantity(sort: type[Quantity], value: object, unit: str = "mm") -> Quantity:
     if abs(size * scale) > LARGEST:
         raise UnreadableError(f"{describe(value)} is absurdly large", f"at most 1e9 in mm, 1/mm, degrees; {hint}")
     return sort(size * scale)
+
+
+def coordinate_of(value: object, unit: str = "mm") -> Coordinate:
+    """Return the value as a coordinate: its length in mm, and the number as typed where it has no unit of its own."""
+    mm = quantity(Length, value, unit)
+    try:
+        return coordinate(Fraction(mm), Fraction(quantity(Number, value)))
+    except UnreadableError:
+        return coordinate(Fraction(mm), None)
 
 
 def describe(value: object) -> str:

@@ -1,13 +1,16 @@
-"""Lengths, areas and flat positions at 40 digits, by other formulas than the program's.
+"""Lengths, areas and flat positions in numbers of 40 digits, by other formulas than the program's.
 
 The flat map here turns the tangent of a directrix by its geodesic curvature,  theta' = (c' x c'') . n / |c'|^2,  and
 lays the ruling at the angle it has with that tangent; the program turns the rulings and never sees c''.
-Antiderivatives are Chebyshev series on panels.  Divides by |c'|: not for a directrix that is an apex.
+Integrals are Chebyshev series on panels, cut off at 1e-24 of their largest value.  Divides by |c'|: not for a directrix
+that is an apex.
 """
 
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from functools import cache
+from math import comb
 
 from mpmath import mp, mpf
 
@@ -42,22 +45,31 @@ def norm(a: Vec) -> mpf:
 
 
 def bezier(points: Sequence[Sequence[object]]) -> Space:
-    """Return the Bezier curve by de Casteljau's scheme."""
-    rows = [tuple(exact(x) for x in point) for point in points]
+    """Return the Bezier curve through de Casteljau's scheme."""
+    return bezier_of([tuple(exact(x) for x in point) for point in points])
+
+
+def bezier_of(rows: list[Vec]) -> Space:
+    """Return the Bezier curve of control points that are 40-digit numbers already: Horner's scheme in powers of v."""
     n = len(rows) - 1
+    zero = (mpf(0),) * 3
+    powers = []
+    for k in range(n + 1):
+        total = zero
+        for i in range(k + 1):
+            total = add(total, rows[i], (-1) ** (k - i) * comb(n, k) * comb(k, i))
+        powers.append(total)
+    orders = [powers]
+    for _ in range(2):
+        orders.append([tuple(k * x for x in row) for k, row in enumerate(orders[-1])][1:] or [zero])
 
-    def value(control: list[Vec], v: mpf) -> Vec:
-        while len(control) > 1:
-            control = [add(a, add(b, a, -1), v) for a, b in pairwise(control)]
-        return control[0]
+    def horner(coefficients: list[Vec], v: mpf) -> Vec:
+        total = coefficients[-1]
+        for row in reversed(coefficients[:-1]):
+            total = add(row, total, v)
+        return total
 
-    def slopes(control: list[Vec], degree: int) -> list[Vec]:
-        made = [add(b, a, -1) for a, b in pairwise(control)]
-        return [(degree * x, degree * y, degree * z) for x, y, z in made] or [(mpf(0),) * 3]
-
-    first = slopes(rows, n)
-    second = slopes(first, n - 1)
-    return lambda v: (value(rows, v), value(first, v), value(second, v))
+    return lambda v: tuple(horner(coefficients, v) for coefficients in orders)
 
 
 def turning(
@@ -81,6 +93,37 @@ def combined(a: Space, b: Space, factor: object = 1) -> Space:
     return lambda v: tuple(add(x, y, factor) for x, y in zip(a(v), b(v), strict=True))
 
 
+def rational(points: Sequence[Sequence[object]], weights: Sequence[object]) -> Space:
+    """Return the rational Bezier curve, by the quotient rule."""
+    weight = [exact(w) for w in weights]
+    top = bezier_of([tuple(w * exact(x) for x in point) for point, w in zip(points, weight, strict=True)])
+    bottom = bezier_of([(w, mpf(0), mpf(0)) for w in weight])
+
+    def jet(v: mpf) -> Jet:
+        (a, a1, a2), ((w, *_), (w1, *_), (w2, *_)) = top(v), bottom(v)
+        r = tuple(x / w for x in a)
+        r1 = tuple((y - w1 * x) / w for x, y in zip(r, a1, strict=True))
+        r2 = tuple((z - 2 * w1 * y - w2 * x) / w for x, y, z in zip(r, r1, a2, strict=True))
+        return r, r1, r2
+
+    return jet
+
+
+def toward(curve: Space, apex: Sequence[object], fraction: object) -> Space:
+    """Return the curve brought a fraction of the way to a point: the other edge of a cone."""
+    A, rest = tuple(exact(x) for x in apex), 1 - exact(fraction)
+
+    def jet(v: mpf) -> Jet:
+        r, r1, r2 = curve(v)
+        return (
+            tuple(a + rest * (x - a) for a, x in zip(A, r, strict=True)),
+            tuple(rest * x for x in r1),
+            tuple(rest * x for x in r2),
+        )
+
+    return jet
+
+
 def fixed(vector: Sequence[object]) -> Space:
     """Return the curve that stays where it is."""
     zero = (mpf(0),) * 3
@@ -89,7 +132,7 @@ def fixed(vector: Sequence[object]) -> Space:
 
 def length(curve: Space) -> mpf:
     """Return the length of a curve."""
-    return mp.quad(lambda v: norm(curve(v)[1]), mp.linspace(0, 1, 9))
+    return Antiderivative(lambda v: norm(curve(v)[1]))(1)
 
 
 def area(c0: Space, c1: Space) -> mpf:
@@ -100,7 +143,7 @@ def area(c0: Space, c1: Space) -> mpf:
         p = add(b[0], a[0], -1)
         return (norm(cross(p, a[1])) + norm(cross(p, b[1]))) / 2
 
-    return mp.quad(density, mp.linspace(0, 1, 9))
+    return Antiderivative(density)(1)
 
 
 def sector(directrix: Space, apex: Sequence[object]) -> mpf:
@@ -112,27 +155,42 @@ def sector(directrix: Space, apex: Sequence[object]) -> mpf:
         arm = add(r, A, -1)
         return norm(cross(arm, slope)) / dot(arm, arm)
 
-    return mp.quad(rate, mp.linspace(0, 1, 9))
+    return Antiderivative(rate)(1)
+
+
+DEGREE = 32
+CUT_OFF = mpf(10) ** -24
+
+
+@cache
+def cosines() -> tuple[list[mpf], list[list[mpf]]]:
+    """Return the Chebyshev nodes of [-1, 1] and the rows from values there to the coefficients of their series."""
+    angles = [mp.pi * (2 * k + 1) / (2 * DEGREE) for k in range(DEGREE)]
+    rows = [[mp.cos(j * a) * (1 if j == 0 else 2) / DEGREE for a in angles] for j in range(DEGREE)]
+    return [mp.cos(a) for a in angles], rows
 
 
 class Antiderivative:
-    """The integral from 0 of a function on [0, 1], by Chebyshev series on equal panels."""
+    """The integral from 0 of a function on [0, 1], by Chebyshev series on panels that are halved until they resolve."""
 
-    def __init__(self, function: Callable[[mpf], mpf], panels: int = 6, degree: int = 36) -> None:
-        self.panels, self.degree = panels, degree
-        angles = [mp.pi * (2 * k + 1) / (2 * degree) for k in range(degree)]
-        self.series: list[list[mpf]] = []
-        total = mpf(0)
-        for panel in range(panels):
-            values = [function((panel + (1 + mp.cos(a)) / 2) / panels) for a in angles]
-            c = [2 * mp.fsum(f * mp.cos(j * a) for f, a in zip(values, angles, strict=True)) / degree
-                 for j in range(degree)]  # fmt: skip
-            c[0] /= 2
+    def __init__(self, function: Callable[[mpf], mpf]) -> None:
+        self.breaks, self.series, total = [mpf(0)], [], mpf(0)
+        scale = max(abs(function(mpf(2 * k + 1) / 14)) for k in range(7))
+        pending = [(mpf(k) / 4, mpf(k + 1) / 4) for k in (3, 2, 1, 0)]
+        nodes, rows = cosines()
+        while pending:
+            a, b = pending.pop()
+            values = [function((a + b + x * (b - a)) / 2) for x in nodes]
+            c = [mp.fdot(row, values) for row in rows]
+            if max(map(abs, c[-3:])) * (b - a) > CUT_OFF * scale:
+                pending += [((a + b) / 2, b), (a, (a + b) / 2)]
+                continue
             c += [mpf(0), mpf(0)]
-            made = [mpf(0)] + [((2 * c[0] if j == 1 else c[j - 1]) - c[j + 1]) / (2 * j) for j in range(1, degree + 1)]
-            made = [x / (2 * panels) for x in made]
+            made = [mpf(0)] + [((2 * c[0] if j == 1 else c[j - 1]) - c[j + 1]) / (2 * j) for j in range(1, DEGREE + 1)]
+            made = [x * (b - a) / 2 for x in made]
             made[0] = total - self._sum(made, mpf(-1))
             self.series.append(made)
+            self.breaks.append(b)
             total = self._sum(made, mpf(1))
 
     @staticmethod
@@ -143,9 +201,10 @@ class Antiderivative:
         return series[0] + x * b0 - b1
 
     def __call__(self, v: object) -> mpf:
-        place = mpf(v) * self.panels
-        panel = min(int(place), self.panels - 1)
-        return self._sum(self.series[panel], 2 * (place - panel) - 1)
+        v = mpf(v)
+        panel = min(max(bisect_right(self.breaks, v) - 1, 0), len(self.series) - 1)
+        a, b = self.breaks[panel], self.breaks[panel + 1]
+        return self._sum(self.series[panel], (2 * v - a - b) / (b - a))
 
 
 def flat_map(c0: Space, c1: Space) -> Callable[[object, object], tuple[mpf, mpf]]:

@@ -168,3 +168,49 @@ def test_the_bag_is_exact_and_fits_one_side_without_the_engine() -> None:
 
 def _but_run(report: dict) -> dict:
     return {key: value for key, value in report.items() if key != "run"}
+
+
+@pytest.fixture(scope="module")
+def guard() -> dict:
+    report, code, files = run("guard/job.toml")
+    assert code == 0, report
+    assert {name for name in files if name.startswith("flat/")} == {
+        "flat/hood.dxf", "flat/collar.1.dxf", "flat/collar.2.dxf",
+    }  # fmt: skip
+    return {part["name"]: part for part in report["parts"]}
+
+
+def test_the_hood_bends_by_what_its_profile_turns(guard: dict) -> None:
+    """From straight up to 45 deg downwards: 135 deg, in hits of at most 8."""
+    detail = next(stage for stage in guard["hood"]["stages"] if stage["stage"] == "unroll")["detail"]
+    hits = [row["angle_deg"] for row in detail["bends"]]
+    assert_near([sum(hits)], [135.0], bound=1e-9, why="closed form")
+    assert len(hits) == 17
+    assert max(hits) - min(hits) < 1e-9
+    assert detail["thickness"]["face"] == "outer"
+    assert_near(detail["thickness"]["offsets"][0]["offset_mm"], 1.0, bound=1e-12, why="r/t is above 5: K = 1/2")
+
+
+def test_the_hoods_straight_edge_is_that_of_its_middle_surface(guard: dict) -> None:
+    """Square to the rulings, an edge is shorter on the middle surface by half the thickness times the turning."""
+    detail = next(stage for stage in guard["hood"]["stages"] if stage["stage"] == "unroll")["detail"]
+    given, flat = detail["given"]["edges"]["c0"], guard["hood"]["flat"]["edges"]["c0"]
+    assert_near(given - flat, 1.0 * 0.75 * pi, bound=1e-10, why="135 deg of 1 mm")
+
+
+def test_every_hole_of_the_hood_arrives_with_its_size(guard: dict) -> None:
+    holes = {hole["name"]: hole for hole in guard["hood"]["flat"]["holes"]}
+    assert set(holes) == {"fix-1", "fix-2", "fix-3", "fix-4", "window"}
+    for number in range(1, 5):
+        # a drill through a bent sheet leaves a little more than a circle, by (r / R)^2 / 8
+        assert 1.0 <= holes[f"fix-{number}"]["area"] / (pi * 4.5**2) < 1.0 + (4.5 / 115.0) ** 2 / 4.0
+
+
+def test_the_collar_is_cut_into_two_even_blanks(guard: dict) -> None:
+    """Eight triangles of sides a, a, b from the apex (0, 0, 40), halved towards it: 3/4 of each is left."""
+    a, a2, b = hypot(60, 40), hypot(32, 32, 10), hypot(28, 32, 30)
+    s = (a + a2 + b) / 2.0
+    triangle = (s * (s - a) * (s - a2) * (s - b)) ** 0.5
+    for blank in ("collar.1", "collar.2"):
+        assert_near(guard[blank]["flat"]["area"], 4 * 0.75 * triangle, bound=1e-9, why="closed form")
+        assert guard[blank]["class"] == "exact"

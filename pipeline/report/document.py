@@ -34,7 +34,7 @@ CONTENTS = ("class", "surface", "flat")
 
 def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
     """Return the report of a job whose drawings are `files`, by their paths."""
-    names = file_names(result.job)
+    names = file_names(result.parts, result.job)
     measures = {run.part.name: _measured(run, run.pattern) for run in result.parts if run.pattern is not None}
     return {
         "schema": SCHEMA,
@@ -81,9 +81,10 @@ def plain(value: object) -> object:
 
 
 def _measured(run: PartRun, pattern: "FlatPattern") -> Figures:
-    """Return the figures of a part, its area as unroll measured it."""
-    flat = _detail(run).get("flat")
-    return figures(pattern, float(flat["area"]) if isinstance(flat, dict) else math.nan)
+    """Return the figures of a part: of what is left when its holes and notches have been cut."""
+    from stages.geometry.contours import area
+
+    return figures(pattern, sum(area(contour.edges) for contour in (pattern.outer, *pattern.inner)))
 
 
 def _detail(run: PartRun) -> dict[str, object]:
@@ -105,6 +106,12 @@ def _job(job: Job) -> Document:
             "density_kg_m3": material.density_kg_m3,
             "bend_radius_min_mm": material.bend_radius_min_mm,
             "max_strain": material.max_strain,
+        },
+        "process": {
+            "type": job.process.type or None,
+            "kerf_mm": job.process.kerf_mm,
+            "min_hole_mm": job.process.min_hole_mm,
+            "min_web_mm": job.process.min_web_mm,
         },
         "tolerance": {
             "accept": tol.accept,

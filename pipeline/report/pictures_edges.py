@@ -79,5 +79,6 @@ def hole_text(path: ArcPath) -> str:
     return f"{length_text(high_x - low_x)} \u00d7 {length_text(high_y - low_y)}"
 
 
-ROUND = 1e-6
-"""Arcs whose radii and centres differ by less, relative to the radius, make one circle."""
+ROUND = 1e-3
+"""Arcs whose radii and centres differ by less, relative to the radius, look like one circle: a hole drilled through a
+bent sheet is one to the four digits that are written."""

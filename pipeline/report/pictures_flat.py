@@ -29,6 +29,7 @@ from pipeline.report.pictures_canvas import (
     scale_bar,
 )
 from pipeline.report.pictures_edges import corner_points, hole_text, rulings, side_length, sides
+from pipeline.report.pictures_marks import draw_marks, marks_legend
 from pipeline.report.pictures_net import ruling_places
 from pipeline.report.pictures_surface import COLOURS, EDGE_WIDTH, RULING_WIDTH, WORST_WIDTH
 from stages.geometry import arcpath
@@ -105,8 +106,7 @@ def draw_pattern(canvas: Canvas, box: Box, pattern: FlatPattern, room: Room, wor
     canvas.lines([fit.place(line) for line in rulings(pattern, ruling_places(pieces))], GREY, RULING_WIDTH)
     if worst_v is not None:
         canvas.lines([fit.place(line) for line in rulings(pattern, [worst_v])], PURPLE, WORST_WIDTH)
-    marks = [fit.place(open_polygon(mark.path, fit)) for mark in pattern.marks]
-    canvas.lines(marks, INK, 0.8, (5.0, 2.0))
+    draw_marks(canvas, pattern, fit)
     _bands(canvas, pattern, fit)
     canvas.lines(lines, INK, 0.8)
     _joints(canvas, contours_drawn, fit)
@@ -123,8 +123,7 @@ def draw_pattern(canvas: Canvas, box: Box, pattern: FlatPattern, room: Room, wor
 def _legend(pattern: FlatPattern, turned: bool) -> str:
     count = sum(contour.path.bulges.size for contour in (pattern.outer, *pattern.inner))
     words = [f"cut: {count} lines and arcs"]
-    if pattern.marks:
-        words.append(f"dashed: {len(pattern.marks)} mark{'s' * (len(pattern.marks) > 1)}")
+    words += marks_legend(pattern)
     if sides(pattern):
         words.append("grey: rulings")
     return "   ".join(words + ["shown turned by \u221290\u00b0"] * turned)
@@ -134,11 +133,6 @@ def closed_polygon(path: ArcPath, fit: Fit) -> Points2:
     """Return a closed path as points in mm, the first repeated; finer than can be seen."""
     points = arcpath.polygon(path, accuracy=fit.fine_mm)
     return np.vstack([points, points[:1]])
-
-
-def open_polygon(path: ArcPath, fit: Fit) -> Points2:
-    """Return any path as points in mm, finer than can be seen."""
-    return closed_polygon(path, fit) if path.closed else arcpath.polygon(path, accuracy=fit.fine_mm)
 
 
 def compound(rings: Sequence[Points2]) -> "Path":

@@ -10,11 +10,11 @@ developable is not decided here: `verify` does that for every kind alike.
 import numpy as np
 
 from stages.construct.assemble import patches_of
+from stages.construct.features import placed
 from stages.construct.joins import join_metrics, join_rows, joins_of
 from stages.construct.plates import plate
-from stages.geometry.arrays import norm
 from stages.geometry.planarity import is_planar
-from stages.geometry.ruled import RuledPatch, at
+from stages.geometry.ruled import RuledPatch, size_of
 from stages.model.material import Part
 from stages.model.part import Flat
 from stages.model.report import Finding, Metric, Outcome, StageReport
@@ -36,16 +36,12 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
         joins = joins_of(built.patches)
         metrics += [*_planar(built.patches), *join_metrics(joins, size, tol)]
         detail |= _with_joins(built.detail, join_rows(joins, size, tol))
+    features = placed(part.spec, () if any(finding.fatal for finding in findings) else built.patches, tol)
+    metrics, findings = [*metrics, *features.metrics], [*findings, *features.findings]
     report = StageReport("construct", part.name, tuple(metrics), tuple(findings), detail)
-    surface = RuledSurface(part, built.patches, size, whole_spans(len(built.patches))) if report.passed else None
-    return Outcome(surface, report)
-
-
-def size_of(patches: tuple[RuledPatch, ...]) -> float:
-    """Return the diagonal of the bounding box of the directrices, mm (sampled at 65 points of each)."""
-    v = np.linspace(0.0, 1.0, 65)
-    points = np.concatenate([at(patch, np.full_like(v, u), v) for patch in patches for u in (0.0, 1.0)])
-    return float(norm(points.max(axis=0) - points.min(axis=0)))
+    if not report.passed:
+        return Outcome(None, report)
+    return Outcome(RuledSurface(part, built.patches, size, whole_spans(len(built.patches)), features.features), report)
 
 
 def _too_small(patches: tuple[RuledPatch, ...], size: float) -> list[Finding]:

@@ -1,7 +1,7 @@
 """Curves of the job file as chains of smooth pieces.
 
 A chain runs over [0, 1] and is split where its pieces meet: at the knots of a B-spline, the points of a polyline or an
-interpolation.  Bezier curves and B-splines stay exact (blossoming over the rationals [1]_).
+interpolation.  Bezier curves and B-splines stay exact, with weights too (blossoming over the rationals [1]_).
 
 .. [1] L. Ramshaw, "Blossoms are polar forms", CAGD 6 (1989), 323-358.
 """
@@ -15,7 +15,7 @@ from math import pi, radians
 import numpy as np
 
 from stages.geometry.arrays import Vector3, norm, unit
-from stages.geometry.curves import Circular, Curve, RationalBezier, bezier, exactly, restrict
+from stages.geometry.curves import Circular, Curve, bezier, exactly, rational, restrict
 from stages.geometry.ruled import RuledPatch, between
 from stages.model.curves import ArcSpec, BSplineSpec, CircleSpec, CurveSpec, EllipseSpec, HelixSpec
 from stages.model.scalars import floats
@@ -129,12 +129,7 @@ def bspline(spec: BSplineSpec) -> Chain:
     ]
     span = inner[-1] - inner[0]
     breaks = tuple((knot - inner[0]) / span for knot in inner)
-    return Chain(tuple(bezier(rows) if weights is None else _rational(rows) for rows in pieces), breaks)
-
-
-def _rational(rows: list[list[Fraction]]) -> RationalBezier:
-    values = np.array([[float(x) for x in row] for row in rows])
-    return RationalBezier(values[:, :3], values[:, 3])
+    return Chain(tuple(bezier(rows) if weights is None else rational(rows) for rows in pieces), breaks)
 
 
 def _blossom(rows: list[list[Fraction]], knots: Row, n: int, arguments: Row, low: Fraction) -> list[Fraction]:

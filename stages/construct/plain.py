@@ -139,11 +139,15 @@ ALMOST_UPRIGHT = 1.0 - 1e-14
 
 def in_plane(link: Chain, frame: PlaneFrame, *, clockwise: bool) -> tuple[PlaneCurve, ...]:
     """Return the edges of a closed chain in the plane, run in the asked sense."""
-    axes = np.stack([frame.x, frame.y])
-    edges = [_edge(curve, frame.origin, axes) for curve in link.curves]
+    edges = plane_edges(link, frame.origin, np.stack([frame.x, frame.y]))
     if (contours.area(edges) < 0.0) == clockwise:
-        return tuple(edges)
+        return edges
     return tuple(_reversed(edge) for edge in edges[::-1])
+
+
+def plane_edges(link: Chain, origin: Vector3, axes: Array) -> tuple[PlaneCurve, ...]:
+    """Return a chain as seen along the normal of a plane, in its axes, shape (2, 3)."""
+    return tuple(_edge(curve, origin, axes) for curve in link.curves)
 
 
 def _edge(curve: Curve, origin: Vector3, axes: Array) -> PlaneCurve:
@@ -153,9 +157,9 @@ def _edge(curve: Curve, origin: Vector3, axes: Array) -> PlaneCurve:
         return Segment(start, end)
     if isinstance(curve, Circular):
         u, v = axes @ curve.U, axes @ curve.V
-        radius = float(norm(curve.U))
-        round_enough = abs(float(norm(curve.V)) - radius) + abs(float(dot(u, v))) / radius <= ROUND * radius
-        if round_enough and not curve.W.any():
+        radius = float(norm(u))
+        round_enough = abs(float(norm(v)) - radius) * radius + abs(float(dot(u, v))) <= ROUND * radius**2
+        if radius > 0.0 and round_enough and not curve.W.any():
             sense = np.sign(cross2(u, v))
             first = float(np.arctan2(u[1], u[0]) + sense * curve.start)
             return CircularArc(axes @ (curve.centre - origin), radius, first, float(sense * curve.sweep))

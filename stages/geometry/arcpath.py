@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, cross2, dot, norm, unit
+from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, Vector2, cross2, dot, norm, unit
 from stages.geometry.rigid import Rigid2, apply
 
 SMALL_SWEEP = 0.1
@@ -120,9 +120,12 @@ def length(path: ArcPath) -> float:
 
 def area(path: ArcPath) -> float:
     """Return the signed area of a closed path in mm2, positive counter-clockwise; exact."""
+    return float(np.sum(swept(path, path.vertices.mean(axis=0))))
+
+
+def swept(path: ArcPath, about: Vector2) -> Values:
+    """Return the area in mm2 that the line from a point sweeps over along each piece, counter-clockwise; exact."""
     start, end = chords(path)
-    middle = path.vertices.mean(axis=0)
-    polygon_part = 0.5 * np.sum(cross2(start - middle, end - middle))
     sweep = sweeps(path)
     chord = norm(end - start)
     # a circular segment of sweep a over the chord c: c^2 (a - sin a) / (8 sin^2(a/2)); by series where that cancels
@@ -130,7 +133,8 @@ def area(path: ArcPath) -> float:
     safe = np.where(small, 1.0, sweep)
     closed_form = (safe - np.sin(safe)) / (8.0 * np.sin(safe / 2.0) ** 2)
     series = sweep / 12.0 * np.polyval(np.array(SEGMENT_SERIES), np.where(small, sweep, 0.0) ** 2)
-    return float(polygon_part + np.sum(chord**2 * np.where(small, series, closed_form)))
+    triangles: Values = 0.5 * cross2(start - about, end - about) + chord**2 * np.where(small, series, closed_form)
+    return triangles
 
 
 def directions(path: ArcPath) -> tuple[Values, Values]:

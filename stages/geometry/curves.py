@@ -2,7 +2,8 @@
 
 Three sorts are enough: Bezier (polynomial), rational Bezier, and circular motion (centre + cos U + sin V + angle W:
 arcs, circles, ellipses and helices).  Cones and cylinders over them are affine images of the same sort, so nothing is
-approximated.  A Bezier curve carries its control points exactly as well, for proofs; floats are those, rounded once.
+approximated.  Both sorts of Bezier curve carry their control points exactly as well, for proofs; floats are those,
+rounded once.
 `Difference` is what is left when two curves of unlike sorts are subtracted; `Along` are parallel rulings.
 """
 
@@ -16,9 +17,12 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from stages.geometry.arrays import Array, ArrayValue, Points3, Values, Vector3
+from stages.geometry.basis import bernstein_jet
 
 ExactPoint = tuple[Fraction, Fraction, Fraction]
 ExactPoints = tuple[ExactPoint, ...]
+HomogeneousPoint = tuple[Fraction, Fraction, Fraction, Fraction]
+HomogeneousPoints = tuple[HomogeneousPoint, ...]
 
 
 @runtime_checkable
@@ -44,35 +48,41 @@ class Bezier(ArrayValue):
 
     def jet(self, v: Values, order: int) -> Array:
         """Return position and derivatives up to `order`, shape (order + 1, n, 3)."""
-        return np.stack([bernstein_sum(differences(self.points, k), v) for k in range(order + 1)])
+        return bernstein_jet(self.points, v, order)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RationalBezier(ArrayValue):
-    """A rational curve: control points already multiplied by their positive weights, shape (n, 3), and the weights."""
+    """A rational curve by its exact homogeneous control points (w x, w y, w z, w), w > 0; made by `rational`.
 
-    weighted: Points3
+    origin: a point near it, mm.  near: w (x - origin) in float64.  weights: w in float64, the largest 1.
+    """
+
+    exact: HomogeneousPoints
+    origin: Vector3
+    near: Points3
     weights: Values
 
     def check(self) -> None:
-        """Refuse weights that are not positive."""
-        if not (self.weights > 0.0).all():
+        """Refuse weights that are not positive, and unlike numbers of points."""
+        if not (len(self.exact) == len(self.near) == len(self.weights) > 0):
+            raise ValueError("a rational curve needs as many exact as rounded control points, at least one")
+        if not all(point[3] > 0 for point in self.exact):
             raise ValueError("weights must be positive")
 
     def jet(self, v: Values, order: int) -> Array:
         """Return position and derivatives up to `order`, shape (order + 1, n, 3), by the quotient rule.
 
-        Taken from the first point on: far from the origin the quotient rule would lose the derivatives' digits.
+        Taken from a point nearby: far from the origin the quotient rule would lose the derivatives' digits.
         """
-        origin = self.weighted[0] / self.weights[0]
-        near = self.weighted - np.outer(self.weights, origin)
-        jets: list[Array] = []
-        weight = [bernstein_sum(differences(self.weights[:, None], k), v) for k in range(order + 1)]
+        rows = bernstein_jet(np.column_stack([self.near, self.weights]), v, order)
+        over, weight = rows[..., :3], rows[..., 3:]
+        jets = np.zeros_like(over)
         for k in range(order + 1):
             rest = sum((comb(k, i) * weight[i] * jets[k - i] for i in range(1, k + 1)), np.zeros((v.size, 3)))
-            jets.append((bernstein_sum(differences(near, k), v) - rest) / weight[0])
-        jets[0] = jets[0] + origin
-        return np.stack(jets)
+            jets[k] = (over[k] - rest) / weight[0]
+        jets[0] += self.origin
+        return jets
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,67 +139,77 @@ def bezier(exact: Sequence[Sequence[Fraction]]) -> Bezier:
     return Bezier(points, np.array([[float(x) for x in point] for point in points]))
 
 
+def rational(exact: Sequence[Sequence[Fraction]]) -> RationalBezier:
+    """Return the rational Bezier curve with these exact homogeneous control points (w x, w y, w z, w)."""
+    points = tuple((Fraction(x), Fraction(y), Fraction(z), Fraction(w)) for x, y, z, w in exact)
+    if not all(point[3] > 0 for point in points):
+        raise ValueError("weights must be positive")
+    origin = _far_origin(points)
+    # the largest weight becomes 1: weights count by their ratios, whatever the scale they were typed in
+    largest = max(point[3] for point in points)
+    near = [[float((x - point[3] * o) / largest) for x, o in zip(point[:3], origin, strict=True)] for point in points]
+    weights = np.array([float(point[3] / largest) for point in points])
+    return RationalBezier(points, np.array([float(x) for x in origin]), np.array(near), weights)
+
+
+def _far_origin(points: HomogeneousPoints) -> list[Fraction]:
+    """Return the first point where the curve is smaller than its distance from the origin, else the origin itself.
+
+    A ruling that shrinks to nothing must not be the difference of two longer vectors.
+    """
+    x, y, z, w = points[0]
+    first = [x / w, y / w, z / w]
+    extent = max(abs(c / point[3] - o) for point in points for c, o in zip(point[:3], first, strict=True))
+    return first if max(map(abs, first)) > extent else [Fraction(0)] * 3
+
+
+def homogeneous(curve: Bezier | RationalBezier) -> HomogeneousPoints:
+    """Return the control points as (w x, w y, w z, w)."""
+    if isinstance(curve, RationalBezier):
+        return curve.exact
+    return tuple((x, y, z, Fraction(1)) for x, y, z in curve.exact)
+
+
 def exactly(values: Sequence[float] | Array) -> tuple[Fraction, ...]:
     """Return the doubles as the rationals they are."""
     return tuple(Fraction(float(value)) for value in values)
 
 
-def bernstein_basis(degree: int, v: Values) -> Array:
-    """Return the Bernstein polynomials of a degree at v, shape (n points, degree + 1)."""
-    powers = np.ones((degree + 1, v.size))
-    others = np.ones((degree + 1, v.size))
-    for i in range(1, degree + 1):
-        powers[i] = powers[i - 1] * v
-        others[i] = others[i - 1] * (1.0 - v)
-    basis: Array = np.array([comb(degree, i) for i in range(degree + 1)])[:, None] * powers * others[::-1]
-    return basis.T
-
-
-def bernstein_sum(coefficients: Array, v: Values) -> Array:
-    """Return sum_i B_i^n(v) coefficients[i], shape (n points, k); stable for v in [0, 1]."""
-    total: Array = bernstein_basis(coefficients.shape[0] - 1, v) @ coefficients
-    return total
-
-
-def differences(coefficients: Array, order: int) -> Array:
-    """Return the Bernstein coefficients of the derivative of that order (one zero row beyond the degree)."""
-    for _ in range(order):
-        n = coefficients.shape[0] - 1
-        coefficients = n * np.diff(coefficients, axis=0) if n > 0 else np.zeros_like(coefficients)
-    return coefficients
-
-
 def affine(curve: Curve, matrix: Sequence[Sequence[Fraction]], shift: Sequence[Fraction]) -> Curve:
-    """Return matrix @ curve + shift; exact on Bezier curves."""
+    """Return matrix @ curve + shift; exact on Bezier curves, rational ones too."""
     if isinstance(curve, Bezier):
-        return bezier(
-            [
-                [sum((m * x for m, x in zip(row, point, strict=True)), d) for row, d in zip(matrix, shift, strict=True)]
-                for point in curve.exact
-            ]
-        )
+        return bezier([_image((*point, Fraction(1)), matrix, shift) for point in curve.exact])
+    if isinstance(curve, RationalBezier):
+        return rational([[*_image(point, matrix, shift), point[3]] for point in curve.exact])
     m = np.array([[float(x) for x in row] for row in matrix])
     d = np.array([float(x) for x in shift])
-    if isinstance(curve, RationalBezier):
-        return RationalBezier(curve.weighted @ m.T + np.outer(curve.weights, d), curve.weights)
     if isinstance(curve, Circular):
         return Circular(m @ curve.centre + d, m @ curve.U, m @ curve.V, m @ curve.W, curve.start, curve.sweep)
     raise ValueError(f"no affine image of a {type(curve).__name__}")
 
 
+def _image(point: HomogeneousPoint, matrix: Sequence[Sequence[Fraction]], shift: Sequence[Fraction]) -> list[Fraction]:
+    """Return the first three homogeneous coordinates of the image of a point; its weight stays."""
+    return [sum((m * x for m, x in zip(row, point, strict=False)), d * point[3])
+            for row, d in zip(matrix, shift, strict=True)]  # fmt: skip
+
+
 def restrict(curve: Curve, low: Fraction, high: Fraction) -> Curve:
-    """Return the part of the curve over [low, high], with its parameter again in [0, 1]; exact on Bezier curves."""
+    """Return the part of the curve over [low, high], with its parameter again in [0, 1]; exact on Bezier curves,
+    rational ones too."""
     if low == 0 and high == 1:
         return curve
     if isinstance(curve, Bezier):
         return bezier(blossom(curve.exact, low, high))
     if isinstance(curve, RationalBezier):
-        rows = [(*point, w) for point, w in zip(curve.weighted, curve.weights, strict=True)]
-        part = np.array(blossom([exactly(row) for row in rows], low, high), dtype=np.float64)
-        return RationalBezier(part[:, :3], part[:, 3])
+        return rational(blossom(curve.exact, low, high))
     if isinstance(curve, Circular):
         start = curve.start + curve.sweep * float(low)
         return Circular(curve.centre, curve.U, curve.V, curve.W, start, curve.sweep * float(high - low))
+    if isinstance(curve, Along):
+        return Along(restrict(curve.distance, low, high), curve.direction)
+    if isinstance(curve, Difference):
+        return Difference(restrict(curve.a, low, high), restrict(curve.b, low, high))
     raise ValueError(f"no part of a {type(curve).__name__}")
 
 
@@ -207,16 +227,38 @@ def blossom(points: Sequence[Sequence[Fraction]], low: Fraction, high: Fraction)
 
 
 def difference(a: Curve, b: Curve) -> Curve:
-    """Return a - b, by control points where both are Bezier curves or share their circular motion."""
+    """Return a - b, by control points where both are Bezier curves (rational or not) or share their circular motion."""
     if isinstance(a, Bezier) and isinstance(b, Bezier):
         degree = max(len(a.exact), len(b.exact)) - 1
         pairs = zip(elevated(a.exact, degree), elevated(b.exact, degree), strict=True)
         return bezier([[x - y for x, y in zip(p, q, strict=True)] for p, q in pairs])
     if isinstance(a, Circular) and isinstance(b, Circular) and (a.start, a.sweep) == (b.start, b.sweep):
         return Circular(a.centre - b.centre, a.U - b.U, a.V - b.V, a.W - b.W, a.start, a.sweep)
-    if isinstance(a, RationalBezier) and isinstance(b, RationalBezier) and np.array_equal(a.weights, b.weights):
-        return RationalBezier(a.weighted - b.weighted, a.weights)
+    if isinstance(a, Bezier | RationalBezier) and isinstance(b, Bezier | RationalBezier):
+        return rational(_over_one_weight(homogeneous(a), homogeneous(b)))
     return Difference(a, b)
+
+
+def _over_one_weight(a: HomogeneousPoints, b: HomogeneousPoints) -> list[list[Fraction]]:
+    """Return a - b of two rational curves: (A w_b - B w_a) / (w_a w_b), or (A - B) / w over the same w."""
+    wa, wb = [point[3] for point in a], [point[3] for point in b]
+    if wa == wb:
+        return [[*(x - y for x, y in zip(p[:3], q[:3], strict=True)), p[3]] for p, q in zip(a, b, strict=True)]
+    columns = [
+        [x - y for x, y in zip(_product([p[axis] for p in a], wb), _product([q[axis] for q in b], wa), strict=True)]
+        for axis in range(3)
+    ]
+    return [list(row) for row in zip(*columns, _product(wa, wb), strict=True)]
+
+
+def _product(f: Sequence[Fraction], g: Sequence[Fraction]) -> list[Fraction]:
+    """Return the Bernstein coefficients of the product of two polynomials in Bernstein form, exact."""
+    n, m = len(f) - 1, len(g) - 1
+    total = [Fraction(0)] * (n + m + 1)
+    for i, x in enumerate(f):
+        for j, y in enumerate(g):
+            total[i + j] += comb(n, i) * comb(m, j) * x * y
+    return [value / comb(n + m, k) for k, value in enumerate(total)]
 
 
 def elevated(points: ExactPoints, degree: int) -> ExactPoints:

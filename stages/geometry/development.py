@@ -1,13 +1,16 @@
 """The isometric map of a developable ruled surface onto the plane, by two quadratures.
 
-With e = p / |p| and w the unit vector across the ruling at its middle,  phi' = e'.w  turns the ruling in the plane and
-q' = (c0'.e) E + (c0'.w) E_perp  carries the directrix, E = (cos phi, sin phi):  flat(u, v) = q(v) + u |p(v)| E(v).
+With e = p / |p| and w the unit vector across the ruling at its middle,  phi' = e'.w  turns the ruling in the plane;
+E = (cos phi, sin phi).  Both directrices are carried by
+    q_i' = (c_i'.e) E + (c_i'.w) E_perp,    flat(u, v) = (1 - u) q_0(v) + u q_1(v).
 Neither a normal nor the curvature of the directrix occurs, so apexes, straight directrices, inflections and cylinders
 are no special cases [1]_.
 
-Both quadratures run on panels of 16 Gauss nodes (`quadrature`), pieces one after the other: a ruling shared by two
-pieces keeps its direction.  Positions are good to some 1e-14 of the size.  Not for surfaces whose edge of regression
-lies inside (verify refuses them); of a surface with warp the map is the one that keeps each ruling and its angle to c0.
+The quadratures run on panels of 16 Gauss nodes (`quadrature`), pieces one after the other: a ruling shared by two
+pieces keeps its direction.  Each panel starts with q_1 = q_0 + |p| E, so the lengths of rulings are not summed up; both
+edges are kept as steps from there, which lose no digits however small the panel is against the part.  Positions are
+good to some 1e-14 of the size.  Not for surfaces whose edge of regression lies inside (verify refuses them); of a
+surface with warp the map is the one that keeps each ruling and its angle to the surface's middle.
 
 .. [1] M. P. do Carmo, "Differential Geometry of Curves and Surfaces", 1976, sections 3-5 and 4-2: developable surfaces
    and the intrinsic equations of their rulings.
@@ -22,28 +25,43 @@ from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, dot, norm, unit
 from stages.geometry.flatmap import Development
 from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
-from stages.geometry.ruled import RuledPatch, across, frames, turn_rate
+from stages.geometry.ruled import RuledPatch, across, frames, sideways
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RulingMap(ArrayValue):
-    """One piece laid flat along its rulings: Legendre series of phi and q on each panel, offsets included.
+    """One piece laid flat along its rulings: on each panel Legendre series of phi and of the steps of both edges.
 
     breaks: panel ends in v, shape (m + 1,).
-    phi: coefficients, rad, shape (m, 17).  q: coefficients, mm, shape (m, 17, 2).
+    phi: coefficients, rad, offsets included, shape (m, 17).
+    starts: q_0 and the ruling q_1 - q_0 where each panel begins, mm, shape (m, 2, 2).
+    steps: coefficients of the ways of q_0 and of q_1 from there, mm, shape (m, 17, 2, 2).
     """
 
     patch: RuledPatch
     breaks: Values
     phi: Array
-    q: Array
+    starts: Array
+    steps: Array
 
     def positions(self, u: Values, v: Values) -> Points2:
         """Return the flat positions of S(u, v), mm: what every later stage sees of the surface."""
         index, x = _locate(self, v)
-        e, _ = _axes(_series(self.phi[index][..., None], x)[:, 0])
-        rulings = norm(self.patch.p.jet(v, 0)[0])
-        return _series(self.q[index], x) + (u * rulings)[:, None] * e
+        begin, ruling = self.starts[index, 0], self.starts[index, 1]
+        flat: Points2 = begin + u[:, None] * ruling + _across(u, _series(self.steps, index, x))
+        return flat
+
+    def chords(self, u0: Values, v0: Values, u: Values, v: Values) -> Points2:
+        """Return the vectors from the flat S(u0, v0) to the flat S(u, v), mm, both on one panel, by its steps.
+
+        Along the directrices from v0 to v at u0, and then along the ruling of v.
+        """
+        index, _ = _locate(self, (v0 + v) / 2.0)
+        before = _series(self.steps, index, _place(self, index, v0))
+        after = _series(self.steps, index, _place(self, index, v))
+        ruling = self.starts[index, 1] + after[:, 1] - after[:, 0]
+        chord: Points2 = _across(u0, after - before) + (u - u0)[:, None] * ruling
+        return chord
 
     def velocities(self, u: Values, v: Values) -> Points2:
         """Return d/dv of the flat positions, mm, from the rates: for directions, never for measuring distortion.
@@ -54,9 +72,9 @@ class RulingMap(ArrayValue):
         v = np.where(gone, np.clip(v, BESIDE, 1.0 - BESIDE), v)
         e, e_perp = _axes(angle(self, v))
         f = frames(self.patch, v)
-        w = unit(across(f, 0.5)[1])
-        s_v = f.c0_d1 + u[:, None] * f.p_d1
-        return dot(s_v, unit(f.p))[:, None] * e + dot(s_v, w)[:, None] * e_perp
+        ruling, w = unit(f.p), unit(across(f, 0.5)[1])
+        s_v, aside = across(f, u)
+        return dot(s_v, ruling)[:, None] * e + dot(aside, w)[:, None] * e_perp
 
 
 def develop(patches: tuple[RuledPatch, ...]) -> Development:
@@ -66,7 +84,7 @@ def develop(patches: tuple[RuledPatch, ...]) -> Development:
     for number, patch in enumerate(patches):
         piece = _flat_piece(patch, phi, q, f"unrolling piece {number}")
         pieces.append(piece)
-        phi, q = float(piece.phi[-1].sum()), piece.q[-1].sum(axis=0)
+        phi, q = float(piece.phi[-1].sum()), piece.starts[-1, 0] + piece.steps[-1, :, 0].sum(axis=0)
     first, last = (norm(patch.p.jet(np.array([v]), 0)[0])[0] for patch, v in ((patches[0], 0.0), (patches[-1], 1.0)))
     return Development(tuple(pieces if first > 0.0 or last == 0.0 else (_turned(piece, -phi) for piece in pieces)))
 
@@ -76,7 +94,8 @@ def _turned(piece: RulingMap, angle: float) -> RulingMap:
     phi = piece.phi.copy()
     phi[:, 0] += angle
     c, s = np.cos(angle), np.sin(angle)
-    return RulingMap(piece.patch, piece.breaks, phi, piece.q @ np.array([[c, s], [-s, c]]))
+    turn = np.array([[c, s], [-s, c]])
+    return piece.replace(phi=phi, starts=piece.starts @ turn, steps=piece.steps @ turn)
 
 
 def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> RulingMap:
@@ -86,11 +105,20 @@ def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> Ruli
     half = np.diff(breaks)[:, None] / 2.0
     # the turning is scaled to a length (see _rates): back to rad here
     turn = half * quadrature.coefficients(rates[..., 0] / scale) @ ANTIDERIVATIVE.T
-    phi = _chained(turn[..., None], np.array([phi0]))[..., 0]
-    e, e_perp = _axes(phi @ AT_NODES.T)
-    velocity = rates[..., 1:2] * e + rates[..., 2:3] * e_perp
-    steps = half[..., None] * np.einsum("lk,pkc->plc", ANTIDERIVATIVE, quadrature.coefficients(velocity))
-    return RulingMap(patch, breaks, phi, _chained(steps, q0))
+    begin = _starts(turn[..., None], np.array([phi0]))[:, 0]
+    phi = turn.copy()
+    phi[:, 0] += begin
+    velocities = _velocities(rates, *_axes(phi @ AT_NODES.T))
+    steps = half[..., None, None] * np.einsum("lk,pkec->plec", ANTIDERIVATIVE, quadrature.coefficients(velocities))
+    rulings = norm(patch.p.jet(breaks[:-1], 0)[0])[:, None] * _axes(begin)[0]
+    return RulingMap(patch, breaks, phi, np.stack([_starts(steps[:, :, 0], q0), rulings], axis=1), steps)
+
+
+def _velocities(rates: Array, e: Array, e_perp: Array) -> Array:
+    """Return q_0' and q_1' at the nodes of all panels, shape (m, 16, 2, 2), from the rates and the directions there."""
+    along, aside = rates[..., 1:4:2, None], rates[..., 2:5:2, None]
+    velocities: Array = along * e[..., None, :] + aside * e_perp[..., None, :]
+    return velocities
 
 
 def _gently_turning(patch: RuledPatch, scale: float, breaks: Array, rates: Array) -> tuple[Array, Array]:
@@ -110,13 +138,11 @@ MOST_TURN = 1.0
 themselves resolved leave their product so.  Over 2 pi they are at 1e-8."""
 
 
-def _chained(local: Array, start: Array) -> Array:
-    """Return the series of all panels, each begun where the one before ends; (m, 17, c) and (c,)."""
+def _starts(local: Array, start: Array) -> Array:
+    """Return where each panel begins, (m, c): where the one before ends; from series (m, 17, c) and the start (c,)."""
     ends = local.sum(axis=1)
-    offsets = np.concatenate([np.zeros((1, ends.shape[1])), np.cumsum(ends, axis=0)[:-1]]) + start
-    chained = local.copy()
-    chained[:, 0] += offsets
-    return chained
+    begun: Array = np.concatenate([np.zeros((1, ends.shape[1])), np.cumsum(ends, axis=0)[:-1]]) + start
+    return begun
 
 
 def _axes(phi: Array) -> tuple[Array, Array]:
@@ -126,29 +152,33 @@ def _axes(phi: Array) -> tuple[Array, Array]:
 
 
 def _rates(patch: RuledPatch, scale: float, v: Values) -> Array:
-    """Return phi' times the length `scale`, c0'.e, c0'.w, |p|, |c0'| and |c1'|, shape (n, 6), all mm.
+    """Return phi' times the length `scale`, c0'.e, c0'.w, c1'.e, c1'.w, |c0'| and |c1'|, shape (n, 7), all mm.
 
-    The last three are here only to be resolved: positions depend on |p|, and lengths measured on them on the speeds.
+    The last two are here only to be resolved: lengths are measured on the positions.
     """
-    f = frames(patch, v)
-    length = norm(f.p)
-    e = unit(f.p)
-    w = unit(across(f, 0.5)[1])
-    speeds = norm(f.c0_d1), norm(f.c1_d1)
-    return np.stack([turn_rate(f) * scale, dot(f.c0_d1, e), dot(f.c0_d1, w), length, *speeds], axis=1)
+    c0_d1, c1_d1 = patch.c0.jet(v, 1)[1], patch.c1.jet(v, 1)[1]
+    p, p_d1 = patch.p.jet(v, 1)
+    length, e = norm(p), unit(p)
+    along = [dot(tangent, e) for tangent in (c0_d1, c1_d1)]
+    # w is at right angles to e only to rounding over the sine of the angle at c0': what lies along e goes first
+    aside = [tangent - part[:, None] * e for tangent, part in zip((c0_d1, c1_d1), along, strict=True)]
+    w = unit(aside[0] + aside[1])
+    turn = np.divide(sideways(p_d1, e, w) * scale, length, out=np.zeros_like(length), where=length > 0.0)
+    edges = [along[0], dot(aside[0], w), along[1], dot(aside[1], w)]
+    return np.stack([turn, *edges, norm(c0_d1), norm(c1_d1)], axis=1)
 
 
 def _scale(patch: RuledPatch) -> float:
     """Return a length of the patch's size, mm: what an angle is multiplied by to be compared with lengths."""
     ends = np.array([0.0, 0.5, 1.0])
-    f = frames(patch, ends)
-    return float(max(norm(f.p).max(), norm(f.c0[1:] - f.c0[:-1]).max()))
+    c0 = patch.c0.jet(ends, 0)[0]
+    return float(max(norm(patch.p.jet(ends, 0)[0]).max(), norm(c0[1:] - c0[:-1]).max()))
 
 
 def angle(piece: RulingMap, v: Values) -> Values:
     """Return the direction of the flat rulings at v, rad."""
     index, x = _locate(piece, v)
-    return _series(piece.phi[index][..., None], x)[:, 0]
+    return _series(piece.phi[..., None], index, x)[:, 0]
 
 
 NO_LENGTH = 1e-15
@@ -160,11 +190,29 @@ BESIDE = 2.0**-20
 def _locate(piece: RulingMap, v: Values) -> tuple[Indices, Values]:
     """Return the panel of each v and the place in it, -1 to 1."""
     index = np.clip(np.searchsorted(piece.breaks, v, side="right") - 1, 0, piece.breaks.size - 2)
+    return index, _place(piece, index, v)
+
+
+def _place(piece: RulingMap, index: Indices, v: Values) -> Values:
+    """Return the places of v in given panels, -1 to 1."""
     low, high = piece.breaks[index], piece.breaks[index + 1]
-    return index, (2.0 * v - low - high) / (high - low)
+    place: Values = ((v - low) - (high - v)) / (high - low)
+    return place
 
 
-def _series(coefficients: Array, x: Values) -> Array:
-    """Return Legendre sums, shape (n, c), of coefficients (n, 17, c) at x (n,)."""
-    total: Array = np.einsum("nk,nkc->nc", legendre.legvander(x, ORDER), coefficients)
+def _series(coefficients: Array, index: Indices, x: Values) -> Array:
+    """Return Legendre sums, shape (n, ...), of the series (m, 17, ...) of panels `index` (n,) at x (n,).
+
+    Equal places in a row, as of points along one ruling, are summed once.
+    """
+    fresh = np.ones(x.size, dtype=bool)
+    fresh[1:] = (x[1:] != x[:-1]) | (index[1:] != index[:-1])
+    sums = np.einsum("nk,nk...->n...", legendre.legvander(x[fresh], ORDER), coefficients[index[fresh]])
+    total: Array = sums[np.cumsum(fresh) - 1]
     return total
+
+
+def _across(u: Values, both: Array) -> Points2:
+    """Return what lies at u between values of both edges, (n, 2, 2)."""
+    between: Points2 = (1.0 - u)[:, None] * both[:, 0] + u[:, None] * both[:, 1]
+    return between

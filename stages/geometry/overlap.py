@@ -37,7 +37,8 @@ def overlaps(paths: Sequence[ArcPath], *, apart: float, least: float) -> list[Ov
     gentle = [split(path, max_bulge=QUARTER_BULGE) for path in paths]
     loose = _loose(gentle)
     owner = np.repeat(np.arange(len(gentle)), [lengths(path).size for path in gentle])
-    first, second = _pairs(loose, apart)
+    start, end = chords(loose)
+    first, second = near_pairs(start[::2], end[::2], loose.bulges[::2], apart)
     shared = _shared(loose, first, second, apart) if first.size else np.zeros(0)
     found: dict[tuple[int, int], float] = {}
     for a, b, length in zip(owner[first].tolist(), owner[second].tolist(), shared.tolist(), strict=True):
@@ -53,10 +54,12 @@ def _loose(paths: Sequence[ArcPath]) -> ArcPath:
     return ArcPath(np.concatenate(ends), np.concatenate(bulges), closed=True)
 
 
-def _pairs(loose: ArcPath, apart: float) -> tuple[Indices, Indices]:
-    """Return the pairs of pieces whose boxes come within `apart` mm, each once."""
-    start, end = (points[::2] for points in chords(loose))
-    margin = np.abs(loose.bulges[::2]) * norm(end - start) / 2.0 + apart
+def near_pairs(start: Array, end: Array, bulge: Array, apart: float) -> tuple[Indices, Indices]:
+    """Return the pairs of gentle pieces whose boxes come within 2 `apart` mm, each once, the smaller index first.
+
+    Start and end are of shape (n, 2), the bulges of shape (n,).
+    """
+    margin = np.abs(bulge) * norm(end - start) / 2.0 + apart
     low, high = np.minimum(start, end), np.maximum(start, end)
     boxes = box(low[:, 0] - margin, low[:, 1] - margin, high[:, 0] + margin, high[:, 1] + margin)
     a, b = STRtree(boxes).query(boxes)
@@ -68,8 +71,8 @@ def _shared(loose: ArcPath, first: Indices, second: Indices, apart: float) -> Va
     """Return the length in mm over which the second piece of each pair runs along the first."""
     start, end = (points[::2][second] for points in chords(loose))
     marks = np.zeros((first.size, 4))
-    marks[:, 1] = _fraction(loose, first, start)
-    marks[:, 2] = _fraction(loose, first, end)
+    marks[:, 1] = fractions_beside(loose, 2 * first, start)
+    marks[:, 2] = fractions_beside(loose, 2 * first, end)
     marks[:, 3] = 1.0
     marks[:, 1:3].sort(axis=1)
     shared = np.zeros(first.size)
@@ -84,10 +87,10 @@ def _shared(loose: ArcPath, first: Indices, second: Indices, apart: float) -> Va
     return shared
 
 
-def _fraction(loose: ArcPath, piece: Indices, points: Points2) -> Values:
+def fractions_beside(path: ArcPath, piece: Indices, points: Points2) -> Values:
     """Return at which share of each piece the point beside it lies, in [0, 1]; for sweeps up to a quarter circle."""
-    start, end = (ends[2 * piece] for ends in chords(loose))
-    half, curvature = sweeps(loose)[2 * piece] / 2.0, curvatures(loose)[2 * piece]
+    start, end = (ends[piece] for ends in chords(path))
+    half, curvature = sweeps(path)[piece] / 2.0, curvatures(path)[piece]
     chord, reach = norm(end - start), norm(points - start)
     arc = np.arcsin(np.clip(reach * np.abs(curvature) / 2.0, 0.0, 1.0))
     curved = np.abs(half) > NEARLY_STRAIGHT

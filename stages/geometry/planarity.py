@@ -5,13 +5,13 @@ from fractions import Fraction
 
 import numpy as np
 
-from stages.geometry.curves import Bezier
+from stages.geometry.curves import Bezier, RationalBezier, homogeneous
 from stages.geometry.ruled import RuledPatch
 
 
 def is_planar(patches: Sequence[RuledPatch]) -> tuple[bool, bool]:
     """Return whether all patches lie in one plane, and whether that is proved (exact control points)."""
-    if all(patch.polynomial for patch in patches):
+    if all(patch.exact for patch in patches):
         return _exactly_planar([point for patch in patches for point in _control_points(patch)]), True
     v = np.linspace(0.0, 1.0, 65)
     points = np.concatenate([c.jet(v, 0)[0] for patch in patches for c in (patch.c0, patch.c1)])
@@ -24,7 +24,9 @@ PLANAR = 1e-12
 
 
 def _control_points(patch: RuledPatch) -> list[tuple[Fraction, ...]]:
-    return [point for c in (patch.c0, patch.c1) if isinstance(c, Bezier) for point in c.exact]
+    """Return the control points of both directrices: a rational curve is plane where they are, its weights positive."""
+    curves = [c for c in (patch.c0, patch.c1) if isinstance(c, Bezier | RationalBezier)]
+    return [(x / w, y / w, z / w) for c in curves for x, y, z, w in homogeneous(c)]
 
 
 def _exactly_planar(points: Sequence[Sequence[Fraction]]) -> bool:

@@ -64,3 +64,33 @@ class CircularArc(ArrayValue):
         """Return d/dt of the points, in mm."""
         angle = self.start_rad + self.sweep_rad * t
         return self.radius * self.sweep_rad * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch(ArrayValue):
+    """The part of an edge from t = `low` to t = `high`."""
+
+    curve: PlaneCurve
+    low: float
+    high: float
+
+    def at(self, t: Values) -> Points2:
+        """Return the points at t, in mm."""
+        return self.curve.at(self.low + (self.high - self.low) * t)
+
+    def derivative(self, t: Values) -> Points2:
+        """Return d/dt of the points, in mm."""
+        return (self.high - self.low) * self.curve.derivative(self.low + (self.high - self.low) * t)
+
+
+def stretch(edge: PlaneCurve, low: float, high: float) -> PlaneCurve:
+    """Return the part of an edge from t = `low` to t = `high`; straight edges and arcs stay what they are."""
+    if (low, high) == (0.0, 1.0):
+        return edge
+    if isinstance(edge, Segment):
+        start, end = edge.at(np.array([low, high]))
+        return Segment(start, end)
+    if isinstance(edge, CircularArc):
+        sweep = edge.sweep_rad
+        return CircularArc(edge.centre, edge.radius, edge.start_rad + low * sweep, (high - low) * sweep)
+    return Stretch(edge, low, high)

@@ -51,19 +51,6 @@ AT_NODES = legendre.legvander(NODES, ORDER)
 """Values at the nodes from 17 Legendre coefficients, shape (16, 17)."""
 
 
-def _differentiation() -> Matrix:
-    """Return the matrix from values at the nodes to derivatives there (barycentric), shape (16, 16)."""
-    gaps = NODES[:, None] - NODES + np.eye(ORDER)
-    weight = 1.0 / gaps.prod(axis=1)
-    matrix: Matrix = (weight[None, :] / weight[:, None]) / gaps
-    np.fill_diagonal(matrix, 0.0)
-    np.fill_diagonal(matrix, -matrix.sum(axis=1))
-    return matrix
-
-
-DIFFERENTIATION = _differentiation()
-
-
 def nodes(starts: Values, ends: Values) -> Matrix:
     """Return the Gauss nodes of the panels [starts, ends], shape (panels, 16)."""
     every: Matrix = (starts + ends)[:, None] / 2.0 + np.outer(ends - starts, NODES) / 2.0
@@ -83,27 +70,46 @@ def panels(sample: Callable[[Values], Array], subject: str) -> tuple[Values, Arr
     A panel is resolved when its last two coefficients, times its share of the interval once it is small, are below
     `ROUNDING` of the scale.  Raises NoSolutionError if halving does not get there.
     """
-    pending = [(0.0, 1.0)]
-    done: list[tuple[float, float, Array]] = []
+    ends = np.array([[0.0, 1.0]])
+    done: list[tuple[Array, Array]] = []
     scale = 0.0
-    for _ in range(DEPTH):
-        starts, ends = np.array(pending).T
-        values = sample(nodes(starts, ends).ravel()).reshape(starts.size, ORDER, -1)
+    for _ in range(0, DEPTH, 2):
+        # a panel and its halves in one call: what a call costs beside its nodes is paid every second time
+        family = np.concatenate([ends[:, None], _halves(ends)], axis=1)
+        values = sample(nodes(*family.reshape(-1, 2).T).ravel()).reshape(*family.shape[:2], ORDER, -1)
         scale = max(scale, float(np.abs(values).max()))
-        tail = np.abs(coefficients(values)[:, -2:]).max(axis=(1, 2)) * np.minimum(1.0, (ends - starts) * SMALL_PANEL)
-        good = tail <= ROUNDING * scale
-        done += [(a, b, block) for a, b, block in zip(starts[good], ends[good], values[good], strict=True)]
-        middle = (starts + ends) / 2.0
-        pending = [
-            half for a, m, b in zip(starts[~good], middle[~good], ends[~good], strict=True) for half in ((a, m), (m, b))
-        ]
-        if not pending:
-            done.sort(key=lambda panel: panel[0])
-            return np.array([panel[0] for panel in done] + [1.0]), np.stack([panel[2] for panel in done])
-        if len(pending) > MOST_PANELS:
+        tails = _tails(values) * np.minimum(1.0, np.diff(family)[..., 0] * SMALL_PANEL)
+        resolved = tails <= ROUNDING * scale
+        whole, halves = resolved[:, 0], resolved[:, 1:] & ~resolved[:, :1]
+        left = ~resolved[:, 1:] & ~resolved[:, :1]
+        done += [(family[whole, 0], values[whole, 0]), (family[:, 1:][halves], values[:, 1:][halves])]
+        ends = _halves(family[:, 1:][left]).reshape(-1, 2)
+        if not ends.size:
+            return _in_order(done)
+        if len(ends) > MOST_PANELS:
             break
-    reached = float(tail.max() / scale) if scale > 0.0 else np.inf
+    reached = float(tails[:, 1:][left].max() / scale) if scale > 0.0 else np.inf
     raise NoSolutionError(subject, reached=reached, wanted=ROUNDING, unit="of the scale")
+
+
+def _tails(values: Array) -> Array:
+    """Return the larger of the last two coefficients of each panel, from values (..., 16, channels)."""
+    tails: Array = np.abs(np.einsum("kj,...jc->...kc", ANALYSIS[-2:], values)).max(axis=(-2, -1))
+    return tails
+
+
+def _halves(ends: Array) -> Array:
+    """Return the ends of both halves of each panel, (m, 2, 2), from the panels' own (m, 2)."""
+    low, high = ends.T
+    middle = (low + high) / 2.0
+    return np.stack([np.stack([low, middle], axis=1), np.stack([middle, high], axis=1)], axis=1)
+
+
+def _in_order(done: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Return the breaks, (m + 1,), and the values of panels that cover [0, 1], from the first to the last."""
+    ends, values = (np.concatenate(part) for part in zip(*done, strict=True))
+    order = np.argsort(ends[:, 0])
+    return np.append(ends[order, 0], 1.0), values[order]
 
 
 SMALL_PANEL = 2.0**12

@@ -6,13 +6,14 @@ developable, 180 deg where the edge of regression lies between the directrices. 
 K = -delta^2 / |n(u)|^4.  Where a normal vanishes (an apex) the other one stands alone.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from stages.geometry.arrays import EPS, Array, ArrayValue, Points3, Values, dot, norm, unit
-from stages.geometry.curves import Bezier, Curve, difference, restrict
+from stages.geometry.arrays import EPS, Array, ArrayValue, Points3, Values, cross3, dot, norm, unit
+from stages.geometry.curves import Bezier, Curve, RationalBezier, difference, restrict
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,9 +25,9 @@ class RuledPatch(ArrayValue):
     p: Curve
 
     @property
-    def polynomial(self) -> bool:
-        """Whether both directrices are polynomial, so that exact statements are possible."""
-        return isinstance(self.c0, Bezier) and isinstance(self.c1, Bezier)
+    def exact(self) -> bool:
+        """Whether both directrices are polynomial or rational with exact control points: proofs are possible."""
+        return isinstance(self.c0, Bezier | RationalBezier) and isinstance(self.c1, Bezier | RationalBezier)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,8 +49,8 @@ def between(c0: Curve, c1: Curve) -> RuledPatch:
 
 
 def part(patch: RuledPatch, low: Fraction, high: Fraction) -> RuledPatch:
-    """Return the part of the patch over [low, high] of v."""
-    return between(restrict(patch.c0, low, high), restrict(patch.c1, low, high))
+    """Return the part of the patch over [low, high] of v; p is restricted like the directrices, not subtracted anew."""
+    return RuledPatch(*(restrict(curve, low, high) for curve in (patch.c0, patch.c1, patch.p)))
 
 
 def frames(patch: RuledPatch, v: Values) -> Frames:
@@ -66,16 +67,20 @@ def at(patch: RuledPatch, u: Values, v: Values) -> Points3:
 
 def end_normals(f: Frames) -> tuple[Points3, Points3]:
     """Return n0 and n1, mm2."""
-    return np.cross(f.p, f.c0_d1), np.cross(f.p, f.c1_d1)
+    return cross3(f.p, f.c0_d1), cross3(f.p, f.c1_d1)
 
 
 def warp(patch: RuledPatch, v: Values) -> Values:
-    """Return the angle that the normal turns along each ruling, rad, in [0, pi].
+    """Return the angle that the normal turns along each ruling, rad, in [0, pi]."""
+    return warp_of(frames(patch, v))
+
+
+def warp_of(f: Frames) -> Values:
+    """Return the warp of each ruling, rad, in [0, pi].
 
     By arctan2 of cross and dot product, since arccos loses half the digits near zero.  n0 x n1 is computed as
     p delta, which does not cancel.  Zero where one of the normals vanishes, NaN where both do.
     """
-    f = frames(patch, v)
     n0, n1 = end_normals(f)
     l0, l1 = norm(n0), norm(n1)
     turn = norm(f.p) * np.abs(delta(f))
@@ -92,12 +97,16 @@ VANISHED = 1e-13
 def delta(f: Frames) -> Values:
     """Return p . (c0' x c1') = p . (c0' x p'), mm3; the shorter of c1' and p' keeps more digits."""
     shorter = np.where((norm(f.c1_d1) < norm(f.p_d1))[:, None], f.c1_d1, f.p_d1)
-    return dot(f.p, np.cross(f.c0_d1, shorter))
+    return dot(f.p, cross3(f.c0_d1, shorter))
 
 
 def gaussian(patch: RuledPatch, v: Values) -> Values:
+    """Return the largest |K| on each ruling, 1/mm2."""
+    return gaussian_of(frames(patch, v))
+
+
+def gaussian_of(f: Frames) -> Values:
     """Return the largest |K| on each ruling, 1/mm2: delta^2 over the fourth power of the shortest normal."""
-    f = frames(patch, v)
     n0, n1 = end_normals(f)
     shortest = norm(nearest_to_zero(n0, n1))
     top = delta(f) ** 2
@@ -125,14 +134,18 @@ def across(f: Frames, u: float | Values) -> tuple[Points3, Points3]:
 def turn_rate(f: Frames) -> Values:
     """Return e'.w: how fast the rulings turn in the tangent plane (and so in the flat), rad per unit of v.
 
-    e = p / |p|, w the unit vector across the ruling at its middle.  A turn that is rounding of p' counts as none:
-    divided by a ruling that shrinks to nothing it would grow without bound.
+    e = p / |p|, w the unit vector across the ruling at its middle.
     """
-    e = unit(f.p)
+    length, turn = norm(f.p), sideways(f.p_d1, unit(f.p), unit(across(f, 0.5)[1]))
+    rate: Values = np.divide(turn, length, out=np.zeros_like(length), where=length > 0.0)
+    return rate
+
+
+def sideways(p_d1: Points3, e: Points3, w: Points3) -> Values:
+    """Return p'.w, mm, 0 where it is rounding of p': over a short ruling that would turn without bound."""
     # p' without its part along the ruling: w is perpendicular to it only to rounding over the sine of their angle
-    length, turn = norm(f.p), dot(f.p_d1 - dot(f.p_d1, e)[:, None] * e, unit(across(f, 0.5)[1]))
-    turns = (length > 0.0) & (np.abs(turn) > PARALLEL * norm(f.p_d1))
-    return np.divide(turn, length, out=np.zeros_like(length), where=turns)
+    turn: Values = dot(p_d1 - dot(p_d1, e)[:, None] * e, w)
+    return np.where(np.abs(turn) > PARALLEL * norm(p_d1), turn, 0.0)
 
 
 PARALLEL = 8 * EPS
@@ -140,21 +153,26 @@ PARALLEL = 8 * EPS
 
 
 def curvature(patch: RuledPatch, v: Values, u: float) -> Values:
+    """Return the signed curvature across the rulings at u, 1/mm."""
+    return curvature_of(frames(patch, v), u)
+
+
+def curvature_of(f: Frames, u: float) -> Values:
     """Return the signed curvature across the rulings at u, 1/mm: S_vv . N over |the part of S_v across the ruling|^2.
 
     Positive towards N = p x S_v.  At an apex it is infinite, or 0 where the normal does not turn; NaN where no tangent
     plane is defined.
     """
-    f = frames(patch, v)
     here = bending(f, u)
-    other = bending(f, 1.0 if u < MIDDLE else 0.0)
-    _, perpendicular = across(f, u)
-    length = norm(perpendicular)
+    length = norm(across(f, u)[1])
     apex = length <= VANISHED * (norm(f.c0_d1) + norm(f.p_d1))
-    at_apex = np.where(np.isnan(other), np.nan, np.where(np.abs(other) > TURNS, np.copysign(np.inf, other), 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
-        result: Values = np.where(apex, at_apex, here / length)
-    return result
+        result: Values = here / length
+    if not apex.any():
+        return result
+    other = bending(f, 1.0 if u < MIDDLE else 0.0)
+    at_apex = np.where(np.isnan(other), np.nan, np.where(np.abs(other) > TURNS, np.copysign(np.inf, other), 0.0))
+    return np.where(apex, at_apex, result)
 
 
 MIDDLE = 0.5
@@ -165,7 +183,7 @@ TURNS = 1e-12
 def bending(f: Frames, u: float) -> Values:
     """Return how fast the normal turns about the ruling, rad per unit of v: on a developable the same for every u."""
     s_v, perpendicular = across(f, u)
-    normal = unit(np.cross(f.p, s_v))
+    normal = unit(cross3(f.p, s_v))
     bend = dot(f.c0_d2 + u * f.p_d2 - 2.0 * _along(f, s_v)[:, None] * f.p_d1, normal)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate: Values = bend / norm(perpendicular)
@@ -185,6 +203,12 @@ def regression(f: Frames) -> Values:
     turn = f.p_d1 - dot(f.p_d1, e)[:, None] * e
     length = dot(turn, turn)
     return np.divide(-dot(c, turn), length, out=np.full_like(length, np.inf), where=length > 0)
+
+
+def size_of(patches: Sequence[RuledPatch]) -> float:
+    """Return the diagonal of the bounding box of the directrices, mm (sampled at 65 points of each)."""
+    v = np.linspace(0.0, 1.0, 65)
+    return box(np.concatenate([at(patch, np.full_like(v, u), v) for patch in patches for u in (0.0, 1.0)]))
 
 
 def box(points: Array) -> float:

@@ -10,11 +10,12 @@ from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 from msgspec import Meta, Struct, field
+from msgspec.structs import replace
 
-from stages.model.scalars import Angle, Direction, Length, Number, is_zero
+from stages.model.scalars import Angle, Coordinate, Direction, Length, Number, coordinate, is_zero
 
-PlanePoint = Annotated[tuple[Length, ...], Meta(min_length=2, max_length=3)]
-"""Two or three coordinates; two only on flat parts and stock."""
+PlanePoint = Annotated[tuple[Coordinate, ...], Meta(min_length=2, max_length=3)]
+"""Two or three coordinates; two only on flat parts and stock, and as u and v of a place on a surface."""
 
 
 class Trouble(NamedTuple):
@@ -80,7 +81,7 @@ class CircleSpec(Table, frozen=True, kw_only=True):
     """A full circle."""
 
     center: PlanePoint
-    radius: Length
+    radius: Coordinate
     normal: Direction = field(default_factory=lambda: (Number(0), Number(0), Number(1)))
 
     def troubles(self) -> Iterator[Trouble]:
@@ -185,8 +186,44 @@ CURVE_KEYS = ("bezier", "bspline", "points", "polyline", "line", "arc", "circle"
 
 def is_flat(curve: CurveSpec) -> bool:
     """Return whether some point of the curve is given by two coordinates only."""
+    return len("xy") in dimensions(curve)
+
+
+def dimensions(curve: CurveSpec) -> set[int]:
+    """Return by how many coordinates the points of the curve are given: 2, 3, or both where they are mixed."""
     plain = [*(curve.bezier or ()), *(curve.points or ()), *(curve.polyline or ()), *(curve.line or ())]
     if curve.bspline is not None:
         plain += curve.bspline.points
     plain += [spec.center for spec in (curve.arc, curve.circle, curve.ellipse) if spec is not None]
-    return any(len(point) == len("xy") for point in plain) or any(is_flat(part) for part in curve.chain or ())
+    helix = {len("xyz")} if curve.helix is not None else set()
+    return {len(point) for point in plain} | helix | {n for part in curve.chain or () for n in dimensions(part)}
+
+
+def coordinates(value: object) -> Iterator[Coordinate]:
+    """Yield all coordinates in a curve, or in a part of its data."""
+    if isinstance(value, Coordinate):
+        yield value
+    elif isinstance(value, tuple):
+        yield from (inner for item in value for inner in coordinates(item))
+    elif isinstance(value, Struct):
+        yield from (inner for key in value.__struct_fields__ for inner in coordinates(getattr(value, key)))
+
+
+def in_numbers(curve: CurveSpec) -> CurveSpec:
+    """Return the curve with its coordinates as the pure numbers that were typed: a curve of u and v."""
+    made = _in_numbers(curve)
+    if not isinstance(made, CurveSpec):
+        raise ValueError("a curve became something else")
+    return made
+
+
+def _in_numbers(value: object) -> object:
+    if isinstance(value, Coordinate):
+        if value.plain is None:
+            raise ValueError("a coordinate with a unit passed the checks of the job file")
+        return coordinate(value.plain, value.plain)
+    if isinstance(value, tuple):
+        return tuple(_in_numbers(item) for item in value)
+    if isinstance(value, Struct):
+        return replace(value, **{key: _in_numbers(getattr(value, key)) for key in value.__struct_fields__})
+    return value

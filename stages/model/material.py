@@ -1,8 +1,10 @@
 """The sheet that parts are made of, and a part together with it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from stages.model.kfactor import KFactor
 from stages.model.part import PartSpec
+from stages.model.process import Process
 
 
 @dataclass(frozen=True, slots=True)
@@ -11,6 +13,7 @@ class Material:
 
     bend_radius_min_mm: smallest inside radius it can be bent to.
     max_strain: largest strain of the outer fibre, as a fraction.
+    yield_strength_mpa, youngs_modulus_gpa: for an estimate of springback.
     """
 
     name: str = ""
@@ -18,14 +21,18 @@ class Material:
     density_kg_m3: float | None = None
     bend_radius_min_mm: float | None = None
     max_strain: float | None = None
+    k_factor: KFactor = field(default_factory=KFactor)
+    yield_strength_mpa: float | None = None
+    youngs_modulus_gpa: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part as asked for, and its material: what the stages start from."""
+    """A part as asked for, its material, and how it is cut: what the stages start from."""
 
     spec: PartSpec
     material: Material = Material()
+    process: Process = field(default_factory=Process)
 
     @property
     def name(self) -> str:

@@ -1,4 +1,4 @@
-"""A part as it is asked for: its surface by kind, quantity, marks.
+"""A part as it is asked for: its surface by kind, quantity, holes, marks, notches.
 
 One class per kind of surface; `SurfaceSpec` is their union, told apart by the key `kind`.  The names of the fields are
 those of the job file.  The paper's patches are in `stages.model.quintics`.
@@ -8,8 +8,12 @@ from collections.abc import Iterator
 from typing import Annotated, Literal
 
 from msgspec import Meta, field
+from msgspec.structs import replace
 
 from stages.model.curves import CurveSpec, Table, Trouble, is_flat
+from stages.model.face import Face
+from stages.model.features import HoleSpec, MarkSpec, NotchSpec, feature_troubles
+from stages.model.forming import BendSpec
 from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled, QuinticStrip, bad_fraction
 from stages.model.scalars import Angle, Direction, Length, Number, Point, is_zero
 
@@ -127,32 +131,37 @@ KINDS: tuple[type[Table], ...] = (
 )  # fmt: skip
 
 
-class MarkSpec(Table, frozen=True, kw_only=True):
-    """Lines to be etched: `count` rulings at equal turning of the normal, or one per `max_angle` of turning."""
-
-    kind: Literal["rulings"]
-    name: str = "rulings"
-    count: Annotated[int, Meta(ge=1, le=10_000)] | None = None
-    max_angle: Angle | None = None
-
-    def troubles(self) -> Iterator[Trouble]:
-        """Yield neither or both of count and max_angle."""
-        if (self.count is None) == (self.max_angle is None):
-            yield Trouble("count", "exactly one of count and max_angle", "say how many rulings are marked")
-        if self.max_angle is not None and self.max_angle <= 0:
-            yield Trouble("max_angle", f"{float(self.max_angle):g} deg", "must be above 0")
-
-
 class PartSpec(Table, frozen=True, kw_only=True):
     """One part: its surface and how often it is needed.
 
-    face: which face of the sheet the surface describes; the middle one unrolls as it is.
+    face: which face of the sheet the surface describes: the middle one, that on the concave side (inner) or on the
+        convex side (outer), or that on the side of p x c0' (plus) or away from it (minus).
+    bend: bend lines for a part that is bent in steps.
     rotations: angles it may be turned by in the nest, or "free"; absent: what the nest allows.
+    cut: "auto" divides a part whose flat pattern overlaps itself along as few rulings as possible.
     """
 
     name: Annotated[str, Meta(min_length=1, max_length=80)]
     surface: SurfaceSpec
     quantity: Annotated[int, Meta(ge=1, le=100_000)] = 1
-    face: Literal["middle"] = "middle"
+    face: Face = "middle"
     rotations: Literal["free"] | tuple[Angle, ...] | None = None
+    cut: Literal["none", "auto"] = "none"
+    hole: tuple[HoleSpec, ...] = ()
     mark: tuple[MarkSpec, ...] = ()
+    notch: tuple[NotchSpec, ...] = ()
+    bend: tuple[BendSpec, ...] = ()
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield what holes, marks and notches break on this kind of surface."""
+        yield from feature_troubles(self.hole, self.mark, self.notch, plate=isinstance(self.surface, Flat))
+        if self.cut == "auto" and isinstance(self.surface, Flat):
+            yield Trouble("cut", "a plate has no rulings to be divided along", 'leave it out, or write "none"')
+        if self.bend and isinstance(self.surface, Flat):
+            yield Trouble("bend", "a plate does not bend", "leave it out")
+        if len(self.bend) > 1:
+            yield Trouble("bend[1]", "a second set of bend lines", "a part is bent in one way: leave one of them out")
+
+    def blank(self, number: int) -> "PartSpec":
+        """Return the specification of one piece of the divided part, `<part>.<n>`."""
+        return replace(self, name=f"{self.name}.{number}", cut="none")

@@ -38,6 +38,17 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Text(ArrayValue):
+    """A text with its middle at a point, `height_mm` high, its baseline `angle_deg` from x."""
+
+    name: str
+    text: str
+    at: Vector2
+    height_mm: float
+    angle_deg: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class FlatPattern(ArrayValue):
     """One part, flat.
 
@@ -57,3 +68,4 @@ class FlatPattern(ArrayValue):
     rotations: tuple[float, ...] | Literal["free"] | None = None
     thickness_mm: float | None = None
     density_kg_m3: float | None = None
+    texts: tuple[Text, ...] = ()

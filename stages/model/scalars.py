@@ -18,6 +18,38 @@ class Length(Fraction):
     __slots__ = ()
 
 
+class Coordinate(Length):
+    """A coordinate of a point: a length in mm, unless it is one of the pure numbers u and v of a place on a surface.
+
+    Two coordinates are u and v on a curved part, and lengths x and y on a plate; only the whole part tells.
+    plain: the number as it was typed, without the unit of the job; None if it was typed with a unit of its own.
+    """
+
+    __slots__ = ("_plain",)
+    _plain: Fraction | None
+
+    @property
+    def plain(self) -> Fraction | None:
+        """The number as typed; the length in mm if nothing else was said."""
+        return getattr(self, "_plain", Fraction(self))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return coordinate, (Fraction(self), self.plain)
+
+    def __copy__(self) -> "Coordinate":
+        return self
+
+    def __deepcopy__(self, _memo: object) -> "Coordinate":
+        return self
+
+
+def coordinate(mm: Fraction, plain: Fraction | None) -> Coordinate:
+    """Return the coordinate of that length, and the number it was typed as."""
+    made = Coordinate(mm)
+    made._plain = plain
+    return made
+
+
 class Curvature(Fraction):
     """A curvature in 1/mm."""
 

@@ -2,92 +2,133 @@
 
     unroll(certificate, tol) -> Outcome[FlatPattern | None]
 
-Along the rulings, by quadrature to rounding (`stages.geometry.development`).  Lengths, angles, area and metric of
-pattern and surface are measured separately and compared (`measure`): their difference is the distortion.  A pattern
-that overlaps itself, or is strained beyond the class that the job accepts, is refused.
+The neutral surface of the sheet (`thickness`) is laid flat along its rulings, by quadrature to rounding
+(`stages.geometry.development`); one that is developable only nearly, by least strain (`stages.geometry.relaxed`).
+Lengths, angles, area and metric of pattern and surface are measured separately and compared (`distortion`): their
+difference is the distortion.  Holes and marks go through the same map (`features`), bend lines and the roll schedule
+follow the turning of the surface (`forming`, `rolls`).  A pattern that overlaps itself, or is strained beyond the class
+that the job accepts, is refused.
 """
 
-from dataclasses import dataclass
-
-import numpy as np
+from dataclasses import dataclass, field
 
 from stages.geometry import arcpath
 from stages.geometry.arrays import Points2
+from stages.geometry.cover import doubled
 from stages.geometry.development import develop
 from stages.geometry.flatmap import Development
+from stages.geometry.relaxed import relaxed
 from stages.model.pattern import Contour, FlatPattern, Mark
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.surface import Certificate, Plate, RuledSurface
 from stages.model.tolerances import CLASSES, STRAIN_LIMIT, Class, Tolerances, class_by_strain
-from stages.unroll import measure, outline
-from stages.unroll.marks import ruling_marks
-from stages.unroll.measure import Edges, PieceNodes
+from stages.unroll import outline
+from stages.unroll.distortion import Distortion, measure
+from stages.unroll.divide import division
+from stages.unroll.features import Features, on_strip
+from stages.unroll.forming import formed
 from stages.unroll.plates import flatten, rotations
+from stages.unroll.rolls import rolled
+from stages.unroll.sensitivity import sensitivity
+from stages.unroll.sides import surface_figures
+from stages.unroll.strain import as_detail, strain_field
+from stages.unroll.thickness import Neutral, neutral
 
 __all__ = ["unroll"]
-
-
-@dataclass(frozen=True, slots=True)
-class Sides:
-    """Edge lengths in mm and areas in mm2, of the surface and of the flat pattern, by separate quadratures."""
-
-    surface: Edges
-    flat: Edges
-    surface_area: float
-    flat_area: float
-
-    def length_error(self) -> float:
-        """Return the largest relative difference of an edge length; edges shorter than rounding are passed over."""
-        pairs = list(zip(self.surface.values(), self.flat.values(), strict=True))
-        longest = max(self.surface.values())
-        return max((abs(b - a) / a for a, b in pairs if a > NO_EDGE * longest), default=0.0)
-
-
-NO_EDGE = 1e-12
-"""An edge shorter than this share of the longest is a point (an apex)."""
 
 
 def unroll(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPattern | None]:
     """Return the flat pattern in its own frame, or None with the reason.
 
-    Positions are within 1e-12 of the size of the exact development; the contour's lines and arcs within `tol.chord_mm`.
-    Raises NoSolutionError where the quadrature does not resolve, or the arcs do not keep the chord.
+    Positions are within 1e-12 of the size of the exact development, within `FLATTENED` of that of least strain; the
+    contour's lines and arcs within `tol.chord_mm`.
+    Raises NoSolutionError where a quadrature does not resolve, the least strain is not found, or the arcs do not keep
+    the chord.
     """
     if isinstance(certificate.surface, Plate):
         return flatten(certificate.surface, tol)
-    return _strip(certificate.surface, certificate.reached, tol)
+    surface = certificate.surface
+    sheet = neutral(surface, tol)
+    if any(finding.fatal for finding in sheet.findings):
+        detail = {"class": "rejected"} | sheet.detail
+        return Outcome(None, StageReport("unroll", surface.part.name, sheet.metrics, sheet.findings, detail))
+    return _laid_flat(sheet, certificate.reached, tol)
 
 
-def _strip(surface: RuledSurface, reached: Class, tol: Tolerances) -> Outcome[FlatPattern | None]:
-    name = surface.part.name
-    development = develop(surface.patches)
-    outer = outline.contour(outline.edges(development), tol.chord_mm, name)
-    nodes = [measure.at_nodes(piece) for piece in development.pieces]
-    corners = outline.corners(development)
-    metrics, sides = _metrics(surface, development, nodes, corners, tol)
-    overlap = outline.overlap(outer.path, tol.chord_mm)
-    covered = Metric("overlap_mm2", overlap, "mm2", "sampled", tol.chord_mm**2)
-    findings = (*_strain_findings(metrics, reached, tol), *_overlap_findings(covered))
-    metrics = (*metrics, covered)
-    marks = tuple(mark for spec in surface.part.spec.mark for mark in ruling_marks(development, spec))
-    detail = {"class": _class(metrics, reached)} | _detail(corners, outer, sides)
+@dataclass(frozen=True, slots=True)
+class Laid:
+    """A flat map, and what was found out in making it."""
+
+    development: Development
+    metrics: tuple[Metric, ...] = ()
+    detail: dict[str, object] = field(default_factory=dict)
+
+
+FLATTENED = 1e-7
+"""How exact positions of a map of least strain are, as a share of the size: 1 um on a part of 10 m."""
+FIELD = 9, 33
+"""Places along and across the rulings at which the strain is reported."""
+
+
+def _laid(surface: RuledSurface, reached: Class) -> Laid:
+    """Return the flat map: along the rulings, or by least strain if the surface has warp."""
+    if reached == "exact":
+        return Laid(develop(surface.patches))
+    found = relaxed(surface.patches, accuracy=FLATTENED)
+    metrics = (
+        Metric("flattening_error", found.reached, "", "sampled", FLATTENED),
+        Metric("strain_uncertainty", found.strain_change),
+        Metric("strain_energy_mm2", found.energy, "mm2"),
+    )
+    return Laid(
+        found.development, metrics, {"strain_field": as_detail(strain_field(surface, found.development, *FIELD))}
+    )
+
+
+def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatPattern | None]:
+    """Return the pattern of the neutral surface, with everything that is cut into it and drawn on it."""
+    surface, name = sheet.surface, sheet.surface.part.name
+    laid = _laid(surface, by_warp)
+    outer = outline.contour(outline.edges(laid.development), tol.chord_mm, name)
+    found = measure(surface, laid.development, tol)
+    covered = _overlap(outer)
+    made = on_strip(surface, laid.development, outer)
+    bends = [formed(sheet.bent, surface, laid.development, spec) for spec in surface.part.spec.bend]
+    rolls = rolled(sheet.bent)
+    strain = next(metric for metric in found.metrics if metric.name == "max_strain")
+    metrics = (*found.metrics, covered, *laid.metrics, *sheet.metrics, *made.metrics, *rolls.metrics)
+    metrics = (*metrics, *(metric for bend in bends for metric in bend.metrics))
+    findings = (
+        *division(surface),
+        *sheet.findings,
+        *_strain_findings(strain, by_warp, tol),
+        *_overlap_findings(covered),
+        *made.findings,
+        *(finding for bend in bends for finding in bend.findings),
+        *rolls.findings,
+    )
+    corners = outline.corners(laid.development)
+    detail = {"class": _class(strain, by_warp)} | _figures(corners, made, found) | laid.detail | sheet.detail
+    detail |= {"bends": [row for bend in bends for row in bend.rows], "rolls": list(rolls.rows)}
+    detail |= {"given": _given(sheet), "sensitivity": sensitivity(sheet.bent)}
     report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
-    return Outcome(_pattern(surface, outer, marks, corners, tol), report)
+    return Outcome(_pattern(surface, made, [mark for bend in bends for mark in bend.marks], corners, tol), report)
 
 
 def _pattern(
-    surface: RuledSurface, outer: Contour, marks: tuple[Mark, ...], corners: Points2, tol: Tolerances
+    surface: RuledSurface, made: Features, bends: list[Mark], corners: Points2, tol: Tolerances
 ) -> FlatPattern:
     spec, material = surface.part.spec, surface.part.material
     return FlatPattern(
         part=spec.name,
         quantity=spec.quantity,
-        outer=outer,
-        inner=(),
-        marks=marks,
-        label_at=outline.label_place(outer.path, (), tol.chord_mm),
+        outer=made.outer,
+        inner=made.inner,
+        marks=(*made.marks, *bends),
+        texts=made.texts,
+        label_at=outline.label_place(made.outer.path, tuple(hole.path for hole in made.inner), tol.chord_mm),
         corners=corners,
         rotations=rotations(spec.rotations),
         thickness_mm=material.thickness_mm,
@@ -95,76 +136,70 @@ def _pattern(
     )
 
 
-def _metrics(
-    surface: RuledSurface, development: Development, nodes: list[PieceNodes], corners: Points2, tol: Tolerances
-) -> tuple[tuple[Metric, ...], Sides]:
-    """Return the distortion, and the figures on both sides that it was computed from."""
-    sides = Sides(
-        measure.surface_edges(surface.patches),
-        measure.flat_edges(nodes, corners),
-        measure.surface_area(surface.patches),
-        measure.flat_area(nodes, corners),
-    )
-    metric = measure.metric_error(development, nodes)
-    strain = measure.largest_strain(development, nodes)
-    gap = outline.piece_gap(development)
-    return (
-        Metric("length_error", sides.length_error()),
-        Metric("area_error", abs(sides.flat_area - sides.surface_area) / sides.surface_area),
-        Metric("angle_error_deg", float(np.degrees(measure.corner_angles(development, nodes))), "deg"),
-        Metric("metric_error", metric.value, where={"v": metric.v, "u": metric.u}),
-        Metric("max_strain", strain.value, "", "sampled", STRAIN_LIMIT[tol.accept], {"v": strain.v, "u": strain.u}),
-        Metric("flat_gap_mm", gap, "mm", "sampled", tol.join_mm),
-    ), sides
-
-
-def _strain(metrics: tuple[Metric, ...]) -> tuple[Metric, float]:
-    strain = next(metric for metric in metrics if metric.name == "max_strain")
-    return strain, float(strain.value or 0.0)
-
-
-def _class(metrics: tuple[Metric, ...], by_warp: Class) -> str:
+def _class(strain: Metric, by_warp: Class) -> str:
     """Return the worse of the classes by warp and by strain; a part without warp has no strain but rounding."""
-    by_strain = class_by_strain(_strain(metrics)[1])
+    by_strain = class_by_strain(float(strain.value or 0.0))
     return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
 
 
-def _strain_findings(metrics: tuple[Metric, ...], reached: Class, tol: Tolerances) -> tuple[Finding, ...]:
+def _strain_findings(strain: Metric, by_warp: Class, tol: Tolerances) -> tuple[Finding, ...]:
     """Refuse a part whose strain is of a worse class than the job accepts."""
-    strain, value = _strain(metrics)
     if strain.passed:
         return ()
+    value = float(strain.value or 0.0)
     message = (
         f"flattening strains the sheet by {value:.3g}, allowed {STRAIN_LIMIT[tol.accept]:g} "
-        f"(accept = {tol.accept!r}); by warp it is {reached!r}, by strain {class_by_strain(value) or 'no class'!r}"
+        f"(accept = {tol.accept!r}); by warp it is {by_warp!r}, by strain {class_by_strain(value) or 'no class'!r}"
     )
     return (Finding("strain", message, True, strain.where),)
 
 
+def _overlap(outer: Contour) -> Metric:
+    """Return the area that the pattern covers twice: proved where the lines and arcs that are cut cover none.
+
+    Where edges meet at almost no angle, arcs fitted to them cross by less than the chord: what is left of that on arcs
+    sixteen times as fine (1/64, where two edges part like a parabola) is not the pattern's own.
+    """
+    covered = doubled(outer.path)
+    if covered == 0.0:
+        return Metric("overlap_mm2", 0.0, "mm2", "proved", outer.chord_mm**2)
+    finer = doubled(outline.contour(outer.edges, outer.chord_mm / FINER).path)
+    return Metric("overlap_mm2", min(covered, finer), "mm2", "sampled", outer.chord_mm**2)
+
+
+FINER = 16.0
+
+
 def _overlap_findings(covered: Metric) -> tuple[Finding, ...]:
+    """Refuse a pattern that cannot be cut from one sheet."""
     if covered.passed:
         return ()
-    message = f"the flat pattern covers {covered.value:.4g} mm2 twice: divide the part into two that each turn less"
-    return (Finding("flat-overlap", message, fatal=False),)
+    message = f'the flat pattern covers {covered.value:.4g} mm2 twice: divide the part along a ruling with cut = "auto"'
+    return (Finding("flat-overlap", message, fatal=True),)
 
 
-def _detail(corners: Points2, outer: Contour, sides: Sides) -> dict[str, object]:
+def _figures(corners: Points2, made: Features, found: Distortion) -> dict[str, object]:
     """Return the figures of both sides, and of the flat pattern alone."""
-    low_x, low_y, high_x, high_y = arcpath.bounds(outer.path)
+    low_x, low_y, high_x, high_y = arcpath.bounds(made.outer.path)
     return {
-        "surface": {"area": sides.surface_area, "edges": _edges(sides.surface)},
+        "surface": {"area": found.surface_area, "edges": found.surface.by_name()},
         "flat": {
-            "area": sides.flat_area,
-            "outline_length": sum(sides.flat.values()),
+            "area": found.flat_area,
+            "outline_length": sum(found.flat.by_name().values()),
             "width": high_x - low_x,
             "height": high_y - low_y,
             "corners": corners.tolist(),
-            "edges": _edges(sides.flat),
-            "marks": [],
-            "holes": [],
+            "edges": found.flat.by_name(),
+            "marks": made.mark_rows,
+            "holes": made.hole_rows,
         },
     }
 
 
-def _edges(edges: Edges) -> dict[str, float]:
-    return {"c0": edges.c0, "c1": edges.c1, "start": edges.start, "end": edges.end}
+def _given(sheet: Neutral) -> dict[str, object] | None:
+    """Return the figures of the surface as given, where another one, the neutral surface, is unrolled."""
+    given = sheet.bent.surface
+    if given is sheet.surface:
+        return None
+    edges, area = surface_figures(given.patches)
+    return {"area": area, "edges": edges.by_name()}

@@ -6,12 +6,14 @@ import numpy as np
 
 from stages.geometry import arcpath, contours
 from stages.geometry.arrays import Array
-from stages.model.pattern import Contour, FlatPattern
+from stages.geometry.cover import doubled
+from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.scalars import Angle
 from stages.model.surface import Plate
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline
+from stages.unroll.features import Features, on_plate
 
 
 def rotations(asked: Literal["free"] | tuple[Angle, ...] | None) -> tuple[float, ...] | Literal["free"] | None:
@@ -22,27 +24,30 @@ def rotations(asked: Literal["free"] | tuple[Angle, ...] | None) -> tuple[float,
 def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
     """Return the plate as a pattern in its own frame."""
     spec, material = plate.part.spec, plate.part.material
-    outer = outline.contour(plate.outline, tol.chord_mm, spec.name)
-    inner = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i + 1}") for i, hole in enumerate(plate.holes))
-    overlap = sum(outline.overlap(contour.path, tol.chord_mm) for contour in (outer, *inner))
+    contour = outline.contour(plate.outline, tol.chord_mm, spec.name)
+    holes = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i}") for i, hole in enumerate(plate.holes, 1))
+    overlap = sum(doubled(contour.path) for contour in (contour, *holes))
     metrics = _metrics(overlap, tol)
-    findings = _crossing_findings(metrics[-1]) or _hole_findings(outer, inner, tol)
-    low_x, low_y, high_x, high_y = arcpath.bounds(outer.path)
+    crossed = _crossing_findings(metrics[-1])
+    made = Features(contour, findings=crossed) if crossed else on_plate(plate, contour, holes)
+    low_x, low_y, high_x, high_y = arcpath.bounds(contour.path)
     corners = np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
-    report = StageReport("unroll", spec.name, metrics, findings, {"class": "exact"} | _detail(outer, inner, corners))
+    detail = {"class": "exact"} | _detail(made, corners)
+    report = StageReport("unroll", spec.name, (*metrics, *made.metrics), made.findings, detail)
     if not report.passed:
         return Outcome(None, report)
     pattern = FlatPattern(
         part=spec.name,
         quantity=spec.quantity,
-        outer=outer,
-        inner=inner,
-        marks=(),
-        label_at=outline.label_place(outer.path, tuple(hole.path for hole in inner), tol.chord_mm),
+        outer=made.outer,
+        inner=made.inner,
+        marks=made.marks,
+        label_at=outline.label_place(made.outer.path, tuple(hole.path for hole in made.inner), tol.chord_mm),
         corners=corners,
         rotations=rotations(spec.rotations),
         thickness_mm=material.thickness_mm,
         density_kg_m3=material.density_kg_m3,
+        texts=made.texts,
     )
     return Outcome(pattern, report)
 
@@ -56,7 +61,7 @@ def _metrics(overlap: float, tol: Tolerances) -> tuple[Metric, ...]:
         Metric("metric_error", 0.0, "", "proved"),
         Metric("max_strain", 0.0, "", "proved"),
     )
-    return (*exact, Metric("overlap_mm2", overlap, "mm2", "sampled", tol.chord_mm**2))
+    return (*exact, Metric("overlap_mm2", overlap, "mm2", "proved", tol.chord_mm**2))
 
 
 def _crossing_findings(covered: Metric) -> tuple[Finding, ...]:
@@ -67,45 +72,20 @@ def _crossing_findings(covered: Metric) -> tuple[Finding, ...]:
     return (Finding("contour-crosses-itself", message, fatal=True),)
 
 
-def _hole_findings(outer: Contour, inner: tuple[Contour, ...], tol: Tolerances) -> tuple[Finding, ...]:
-    """Refuse holes outside the plate or across each other."""
-    import shapely
-
-    plate = shapely.Polygon(arcpath.polygon(outer.path, accuracy=tol.chord_mm))
-    holes = [shapely.Polygon(arcpath.polygon(hole.path, accuracy=tol.chord_mm)) for hole in inner]
-    findings = []
-    for i, hole in enumerate(holes):
-        if not plate.contains(hole):
-            findings.append(Finding("hole-outside", f"holes[{i}] is not inside the outline", fatal=True))
-        findings += [
-            Finding("holes-cross", f"holes[{i}] and holes[{j}] overlap", fatal=True)
-            for j in range(i)
-            if hole.intersects(holes[j])
-        ]
-    return tuple(findings)
-
-
-def _detail(outer: Contour, inner: tuple[Contour, ...], corners: Array) -> dict[str, object]:
+def _detail(made: Features, corners: Array) -> dict[str, object]:
     """Return area and lengths from the exact edges ("surface") and the same again as the flat figures."""
-    area = sum(contours.area(contour.edges) for contour in (outer, *inner))
+    area = sum(contours.area(contour.edges) for contour in (made.outer, *made.inner))
     low, high = corners[0], corners[2]
     return {
         "surface": {"area": area, "edges": None},
         "flat": {
             "area": area,
-            "outline_length": contours.length(outer.edges),
+            "outline_length": contours.length(made.outer.edges),
             "width": float(high[0] - low[0]),
             "height": float(high[1] - low[1]),
             "corners": corners.tolist(),
             "edges": None,
-            "marks": [],
-            "holes": [_hole(contour) for contour in inner],
+            "marks": made.mark_rows,
+            "holes": made.hole_rows,
         },
     }
-
-
-def _hole(contour: Contour) -> dict[str, object]:
-    """Return name, area and the middle of the box of a hole."""
-    low_x, low_y, high_x, high_y = arcpath.bounds(contour.path)
-    x, y = (low_x + high_x) / 2.0, (low_y + high_y) / 2.0
-    return {"name": contour.name, "area": abs(contours.area(contour.edges)), "x": x, "y": y}

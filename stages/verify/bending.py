@@ -1,12 +1,22 @@
-"""The smallest bending radius of a surface, held against what the material allows.
+"""The sharpest bend of a part, held against what the material allows: smallest inside radius, largest strain.
 
-rho is the radius of the middle surface across the rulings; the inside radius is rho - t / 2, the strain of the outer
-fibre t / (2 rho).  Sampled over the patch: rho is linear along a ruling, so both edges are enough.
+The radius rho of the surface as given is smallest at an end of a ruling, along which it is linear.  Which face of the
+sheet that surface is decides what lies about it (`stages.model.sheetface`): the inside radius is rho less the distance
+to the inside face, and the outer fibre is strained by t / (2 rho_m), rho_m the radius of the middle surface.  Bends
+towards N = p x S_v and away from it are looked at apart: the face that is inside differs.  Sampled over the patch.
+
+Folds between patches have no radius of their own and do not count.
 """
 
+from dataclasses import dataclass
+
+from stages.errors import NoSolutionError
 from stages.geometry.planarity import is_planar
+from stages.geometry.tightest import Tight, tightest
+from stages.geometry.turning import turning
 from stages.model.material import Material
-from stages.model.report import Finding, Metric, Where
+from stages.model.report import Evidence, Finding, Metric, Where
+from stages.model.sheetface import Layers, layers
 from stages.model.surface import RuledSurface
 from stages.verify import sampled
 
@@ -14,36 +24,105 @@ STRAIGHT = 1e-9
 """A curvature below this share of 1/D bends the part by less than a nanometre per metre: flat."""
 
 
-def smallest_radius(surface: RuledSurface) -> tuple[Metric, list[Finding]]:
-    """Return the smallest inside bending radius in mm (None: nowhere bent), and what the material says to it."""
+@dataclass(frozen=True, slots=True)
+class Sharpest:
+    """Radii in mm at the sharpest bend: of the surface as given, the middle surface and the inside face; its place.
+
+    inside_mm is below 0 where the sheet is too thick for the bend.
+    """
+
+    given_mm: float
+    middle_mm: float
+    inside_mm: float
+    where: Where
+
+
+def bending(surface: RuledSurface) -> tuple[tuple[Metric, Metric], list[Finding]]:
+    """Return the smallest inside radius in mm, the largest strain of the outer fibre, and what the material says.
+
+    Both are None where the part is bent nowhere, the strain also where no thickness is known.
+    """
     flat, proved = is_planar(surface.patches)
     if flat:
-        return Metric("min_bend_radius_mm", None, "mm", "proved" if proved else "sampled"), []
+        return _nowhere("proved" if proved else "sampled"), []
+    found = sharpest(surface)
+    if not isinstance(found, Sharpest):
+        return _nowhere("sampled"), [found] if isinstance(found, Finding) else []
+    material = surface.part.material
+    inside = max(found.inside_mm, 0.0)
+    strain = None if material.thickness_mm is None else _strain(material.thickness_mm, found.middle_mm)
+    shown = strain if strain is not None and strain < float("inf") else None
+    metrics = (
+        Metric("min_bend_radius_mm", inside, "mm", "sampled", None, found.where),
+        Metric("outer_fibre_strain", shown, "", "sampled", material.max_strain, found.where),
+    )
+    checked = [*_radius_findings(inside, material, found), *_strain_findings(strain, material, found.where)]
+    return metrics, [*checked, *_unchecked(material)]
+
+
+def _nowhere(evidence: Evidence) -> tuple[Metric, Metric]:
+    """Return the metrics of a part that is bent nowhere, or that has no face such as the job names."""
+    return Metric("min_bend_radius_mm", None, "mm", evidence), Metric("outer_fibre_strain", None, "", evidence)
+
+
+def sharpest(surface: RuledSurface) -> Sharpest | Finding | None:
+    """Return the sharpest bend, None where there is none; a finding where the face does not exist on the surface."""
+    thickness = surface.part.material.thickness_mm or 0.0
+    face = surface.part.spec.face
+    try:
+        bends = turning(surface.patches)
+    except NoSolutionError:  # a fold inside, or a normal that vanishes: refused elsewhere, its curvature still counts
+        return _unsigned(surface, thickness)
+    sheet = layers(face, bends, thickness)
+    if isinstance(sheet, Finding):
+        v = float((sheet.where or {}).get("v", 0.0))
+        piece = min(int(v), len(surface.patches) - 1)
+        return Finding(sheet.code, sheet.message, True, {"v": surface.v_of(piece, v - piece)})
+    both = [(sign, found) for sign in (1.0, -1.0) if (found := tightest(bends, sign)) is not None]
+    every = [_radii(surface, sign, tight, sheet) for sign, tight in both if _bends(tight, surface.size_mm)]
+    return min(every, key=lambda bend: bend.inside_mm, default=None)
+
+
+def _bends(tight: Tight, size_mm: float) -> bool:
+    return tight.curvature * size_mm > STRAIGHT
+
+
+def _radii(surface: RuledSurface, sign: float, tight: Tight, sheet: Layers) -> Sharpest:
+    radius = 1.0 / tight.curvature
+    where: Where = {"v": surface.v_of(tight.piece, tight.v), "u": tight.u}
+    return Sharpest(radius, radius - sign * sheet.middle_mm, radius - sign * sheet.inside_mm(sign), where)
+
+
+def _unsigned(surface: RuledSurface, thickness: float) -> Sharpest | None:
+    """Return the sharpest bend either way, the surface taken for the middle one."""
     found = [sampled.largest_curvature(patch, i) for i, patch in enumerate(surface.patches)]
     worst = max(found, key=lambda extreme: extreme.value)
     if worst.value * surface.size_mm <= STRAIGHT:
-        return Metric("min_bend_radius_mm", None, "mm"), []
-    material = surface.part.material
-    middle = 1.0 / worst.value
-    inside = max(middle - (material.thickness_mm or 0.0) / 2.0, 0.0)
-    metric = Metric("min_bend_radius_mm", inside, "mm", "sampled", None, worst.where)
-    findings = [*_radius_findings(inside, material, worst.where), *_strain_findings(middle, material, worst.where)]
-    return metric, [*findings, *_unchecked(material)]
+        return None
+    radius = 1.0 / worst.value
+    return Sharpest(radius, radius, radius - thickness / 2.0, worst.where)
 
 
-def _radius_findings(inside: float, material: Material, where: Where) -> list[Finding]:
+def _strain(thickness: float, middle_mm: float) -> float:
+    return thickness / (2.0 * middle_mm) if middle_mm > 0.0 else float("inf")
+
+
+def _radius_findings(inside: float, material: Material, found: Sharpest) -> list[Finding]:
     least = material.bend_radius_min_mm
-    if least is None or inside >= least:
-        return []
-    message = f"bends to an inside radius of {inside:.4g} mm, the material allows {least:.4g} mm"
-    return [Finding("bend-radius", message, True, where)]
+    if least is not None and inside < least:
+        message = f"bends to an inside radius of {inside:.4g} mm, the material allows {least:.4g} mm"
+        return [Finding("bend-radius", message, True, found.where)]
+    if least is None and found.inside_mm < 0.0:
+        message = (
+            f"the surface bends to a radius of {found.given_mm:.4g} mm: the inside face, {-found.inside_mm:.4g} mm "
+            "beyond the centre, would fold over itself"
+        )
+        return [Finding("inside-radius", message, False, found.where)]
+    return []
 
 
-def _strain_findings(middle: float, material: Material, where: Where) -> list[Finding]:
-    if material.max_strain is None or material.thickness_mm is None:
-        return []
-    strain = material.thickness_mm / (2.0 * middle) if middle > 0.0 else float("inf")
-    if strain <= material.max_strain:
+def _strain_findings(strain: float | None, material: Material, where: Where) -> list[Finding]:
+    if material.max_strain is None or strain is None or strain <= material.max_strain:
         return []
     message = f"the outer fibre stretches by {strain:.3%}, the material allows {material.max_strain:.3%}"
     return [Finding("bend-strain", message, True, where)]

@@ -1,19 +1,26 @@
-"""Sampled figures of a ruled surface: warp, curvature, bending radius, shortest ruling, turning.
+"""Sampled figures of a ruled surface: warp, |K|, bending radius, rulings and normals that vanish, turning.
 
-Each is the extreme of a smooth function of v found by `extremum.maximum`, on both ends of the rulings where u matters
-(the radius of curvature is linear along a ruling).  Sampled, not proved.
+Each is the extreme of a smooth function of v found by `extremum.maxima`, on both ends of the rulings where u matters
+(the radius of curvature is linear along a ruling).  All figures of one search share the frames.  Sampled, not proved.
 """
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from stages.geometry import ruled
-from stages.geometry.arrays import Values, norm
-from stages.geometry.extremum import maximum
+from stages.geometry.arrays import Array, Values, norm
+from stages.geometry.extremum import maxima
 from stages.geometry.quadrature import integral
-from stages.geometry.ruled import RuledPatch, end_normals, frames, turn_rate
+from stages.geometry.ruled import (
+    Frames,
+    RuledPatch,
+    curvature_of,
+    end_normals,
+    frames,
+    gaussian_of,
+    turn_rate,
+    warp_of,
+)
 from stages.model.report import Where
 
 
@@ -33,59 +40,47 @@ class Extreme:
         return place if self.u is None else place | {"u": self.u}
 
 
-def largest_warp(patch: RuledPatch, piece: int) -> Extreme:
-    """Return the largest warp, rad."""
-    value, v = maximum(lambda v: ruled.warp(patch, v))
-    return Extreme(max(value, 0.0), piece, v)
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """How far a patch is from developable, and where it is nearest to having no tangent plane.
+
+    warp: the largest, rad.  gaussian: the largest |K|, 1/mm2.
+    ruling: the shortest ruling strictly inside, mm; the ends may be apexes.
+    normal: the least |n(1/2)| / (|p| max|c'|) strictly inside: 0 where a ruling is along the directrix.
+    regular: whether neither end normal vanishes anywhere, ends included, as far as samples show.
+    """
+
+    warp: Extreme
+    gaussian: Extreme
+    ruling: Extreme
+    normal: Extreme
+    regular: bool
 
 
-def largest_gaussian(patch: RuledPatch, piece: int) -> Extreme:
-    """Return the largest |K|, 1/mm2."""
-    value, v = maximum(lambda v: ruled.gaussian(patch, v))
-    return Extreme(max(value, 0.0), piece, v)
+def survey(patch: RuledPatch, piece: int) -> Survey:
+    """Return the extremes of a patch, all from one search."""
+    length, speed = _largest(patch)
 
-
-def largest_curvature(patch: RuledPatch, piece: int) -> Extreme:
-    """Return the largest curvature across the rulings, 1/mm; infinite at an apex."""
-    found = [(*maximum(partial(_bend, patch, u)), u) for u in (0.0, 1.0)]
-    value, v, u = max(found)
-    return Extreme(max(value, 0.0), piece, v, u)
-
-
-def _bend(patch: RuledPatch, u: float, v: Values) -> Values:
-    bend: Values = np.abs(ruled.curvature(patch, v, u))
-    return bend
-
-
-def shortest_ruling(patch: RuledPatch, piece: int) -> Extreme:
-    """Return the shortest ruling strictly inside the patch, mm; the ends may be apexes."""
-    value, v = maximum(lambda v: -_inside(norm(patch.p.jet(v, 0)[0]), v))
-    return Extreme(-value, piece, v)
-
-
-def weakest_normal(patch: RuledPatch, piece: int) -> Extreme:
-    """Return the least |n(1/2)| / (|p| max|c'|) strictly inside: 0 where a ruling is along the directrix."""
-    _, speed = _largest(patch)
-
-    def strength(v: Values) -> Values:
+    def figures(v: Values) -> Array:
         f = frames(patch, v)
-        n0, n1 = end_normals(f)
-        scale = norm(f.p) * speed
-        return _inside(np.divide(norm(n0 + n1), scale, out=np.ones_like(scale), where=scale > 0), v)
+        return np.column_stack([warp_of(f), gaussian_of(f), -_strengths(f, v, speed)])
 
-    value, v = maximum(lambda v: -strength(v))
-    return Extreme(-value, piece, v)
+    warp, gaussian, ruling, normal, weakest = maxima(figures)
+    return Survey(
+        Extreme(max(warp[0], 0.0), piece, warp[1]),
+        Extreme(max(gaussian[0], 0.0), piece, gaussian[1]),
+        Extreme(-ruling[0], piece, ruling[1]),
+        Extreme(-normal[0], piece, normal[1]),
+        -weakest[0] > NO_NORMAL * length * speed,
+    )
 
 
-def is_regular(patch: RuledPatch) -> bool:
-    """Return whether neither end normal vanishes anywhere, ends included, as far as samples show."""
-    ruling, speed = _largest(patch)
-
-    def weakness(v: Values) -> Values:
-        n0, n1 = end_normals(frames(patch, v))
-        return -np.minimum(norm(n0), norm(n1))
-
-    return -maximum(weakness)[0] > NO_NORMAL * ruling * speed
+def _strengths(f: Frames, v: Values, speed: float) -> Array:
+    """Return the length of the rulings, the middle normal over it and a speed, and the weaker end normal, (n, 3)."""
+    n0, n1 = end_normals(f)
+    length = norm(f.p)
+    middle = np.divide(norm(n0 + n1), length * speed, out=np.ones_like(length), where=length * speed > 0)
+    return np.stack([_inside(length, v), _inside(middle, v), np.minimum(norm(n0), norm(n1))], axis=1)
 
 
 NO_NORMAL = 1e-7
@@ -105,6 +100,18 @@ INSIDE = 1e-3
 
 def _inside(values: Values, v: Values) -> Values:
     return np.where((v > INSIDE) & (v < 1.0 - INSIDE), values, np.inf)
+
+
+def largest_curvature(patch: RuledPatch, piece: int) -> Extreme:
+    """Return the largest curvature across the rulings, 1/mm; infinite at an apex."""
+
+    def figures(v: Values) -> Array:
+        f = frames(patch, v)
+        bends: Array = np.abs(np.stack([curvature_of(f, 0.0), curvature_of(f, 1.0)], axis=1))
+        return bends
+
+    value, v, u = max((*found, u) for found, u in zip(maxima(figures), (0.0, 1.0), strict=True))
+    return Extreme(max(value, 0.0), piece, v, u)
 
 
 def turning(patch: RuledPatch) -> float:

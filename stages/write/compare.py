@@ -18,7 +18,7 @@ from stages.geometry.hausdorff import hausdorff
 from stages.geometry.sampling import Resolved, length_and_area, resolved
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
-from stages.write.drawing import Drawing, Item
+from stages.write.drawing import Drawing, Item, Label
 from stages.write.readback import Entity, ReadFile
 
 ROUND_TRIP = 1e-9
@@ -65,7 +65,7 @@ def compared(back: ReadFile, drawing: Drawing, patterns: Mapping[str, FlatPatter
     paths = [entity for entity in back.entities if entity.kind != "TEXT"]
     findings = tuple(
         Finding("readback-content", f"{drawing.path}: {text}", fatal=True, where={"file": drawing.path})
-        for text in _differences(paths, drawing.items)
+        for text in (*_differences(paths, drawing.items), *_unlike_labels(back, drawing.labels))
     )
     figures = () if findings else tuple(_figures(paths, drawing.items, patterns))
     if shortest < LEAST_PIECE_MM:
@@ -115,6 +115,23 @@ def _differences(paths: Sequence[Entity], items: Sequence[Item]) -> Iterator[str
             yield f"{entity.kind} on {entity.layer} is not the path that was drawn"
             continue
         yield from _sizes(entity, entity.path, item.path)
+
+
+def _unlike_labels(back: ReadFile, labels: Sequence[Label]) -> Iterator[str]:
+    """Yield the texts that are not there, not where they were put, or not as high or turned."""
+    texts = [entity for entity in back.entities if entity.writing is not None]
+    if len(texts) != len(labels):
+        yield f"holds {len(texts)} texts, drawn were {len(labels)}"
+        return
+    for entity, label in zip(texts, labels, strict=True):
+        found = entity.writing
+        if found is None or (entity.layer, found.text) != (label.layer, label.text):
+            yield f"the text {label.text!r} is not there in its place"
+            continue
+        numbers = (found.x, found.y, found.height_mm, found.angle_deg)
+        wanted = (*label.at, label.height_mm, label.angle_deg)
+        if max(abs(a - b) for a, b in zip(numbers, wanted, strict=True)) > ROUND_TRIP_MM:
+            yield f"the text {label.text!r} is not where, as high or turned as it was drawn"
 
 
 def _sizes(entity: Entity, found: ArcPath, drawn: ArcPath) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """What goes into each file, in the order it will be cut, before anyone speaks of formats.
 
-Per part: its label, its marks, its inner contours (small first), its outer contour; a sheet's outline comes before all
-parts.  A nested part is the pattern's own path, moved: arcs stay arcs, marks and label go along.
+Per part: its label and texts, its marks, its inner contours (small first), its outer contour; a sheet's outline comes
+before all parts.  A nested part is the pattern's own path, moved: arcs stay arcs, marks, label and texts go along.
 """
 
 from collections.abc import Iterable, Mapping
@@ -13,7 +13,7 @@ from stages.geometry.arcpath import ArcPath, area, bounds, distances, piece_coun
 from stages.geometry.arrays import ArrayValue, Vector2
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
-from stages.model.pattern import FlatPattern
+from stages.model.pattern import FlatPattern, Text
 from stages.model.sheet import SheetLayout
 
 LABEL_MOST_MM = 10.0
@@ -26,6 +26,7 @@ LABEL_FILL = 0.9
 LETTER_WIDTH = 1.0
 """Width of a letter in heights: the widest letters of the fonts that readers put in for STANDARD."""
 
+FULL_TURN = 360.0
 QUARTER_BULGE = 0.41421356237309503
 
 
@@ -68,7 +69,8 @@ class Drawing:
 
 def flat_drawing(pattern: FlatPattern, machine: Machine) -> Drawing:
     """Return the drawing of one part in its own flat frame."""
-    return Drawing(f"flat/{pattern.part}.dxf", tuple(_items(pattern, Rigid2(), machine)), (_label(pattern, Rigid2()),))
+    items, labels = _items(pattern, Rigid2(), machine), _labels(pattern, Rigid2())
+    return Drawing(f"flat/{pattern.part}.dxf", tuple(items), tuple(labels))
 
 
 def sheet_drawing(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> Drawing:
@@ -78,7 +80,7 @@ def sheet_drawing(layout: SheetLayout, patterns: Mapping[str, FlatPattern], mach
     items = [Item("SHEET", "", ArcPath(corners, np.zeros(4), closed=True))]
     for placement in layout.placements:
         items += _items(patterns[placement.part], placement.motion, machine)
-    labels = [_label(patterns[placement.part], placement.motion) for placement in layout.placements]
+    labels = [label for placed in layout.placements for label in _labels(patterns[placed.part], placed.motion)]
     return Drawing(f"cut/{layout.sheet.id}-{layout.index}.dxf", tuple(items), tuple(labels))
 
 
@@ -99,6 +101,18 @@ def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]
     marks = [moved(mark.layer, mark.path) for mark in pattern.marks]
     holes = [moved("CUT_INNER", pattern.inner[i].path, i + 1) for i in inner]
     return [*marks, *holes, moved("CUT_OUTER", pattern.outer.path, 0)]
+
+
+def _labels(pattern: FlatPattern, motion: Rigid2) -> list[Label]:
+    """Return the part's name and the texts on it."""
+    return [_label(pattern, motion), *(_moved(text, motion) for text in pattern.texts)]
+
+
+def _moved(text: Text, motion: Rigid2) -> Label:
+    """Return a text moved with its part: on a mirrored part its line is mirrored, its letters are not."""
+    angle = 180.0 - text.angle_deg if motion.mirrored else text.angle_deg
+    at = apply(motion, text.at[None, :])[0]
+    return Label("LABEL", text.text, at, text.height_mm, (angle + motion.angle_deg) % FULL_TURN)
 
 
 def _label(pattern: FlatPattern, motion: Rigid2) -> Label:

@@ -1,7 +1,7 @@
 """What a written file says, read again from its text: header, entities as paths, and what the library complains of.
 
-Nothing of the drawing that was written is used here.  Entities that are no path (text, or what does not belong into a
-cut file) are kept by kind and layer.
+Nothing of the drawing that was written is used here.  Texts are kept with what they say and where; entities that are
+neither (what does not belong into a cut file) by kind and layer.
 """
 
 from dataclasses import dataclass
@@ -13,6 +13,7 @@ from ezdxf.entities.circle import Circle
 from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.line import Line
 from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.entities.text import Text
 from ezdxf.filemanagement import read as read_dxf
 from ezdxf.lldxf.const import DXFError
 
@@ -20,8 +21,19 @@ from stages.geometry.arcpath import ArcPath
 
 
 @dataclass(frozen=True, slots=True)
+class Writing:
+    """A text by its letters, the place of its middle, its height (mm) and the direction of its line."""
+
+    text: str
+    x: float
+    y: float
+    height_mm: float
+    angle_deg: float
+
+
+@dataclass(frozen=True, slots=True)
 class Entity:
-    """One entity: its DXF name, layer, colour index, its path if it is one, and whether it closes.
+    """One entity: its DXF name, layer, colour index, its path if it is one, whether it closes, what it says.
 
     A circle is a closed path of two half circles, counter-clockwise.
     """
@@ -31,6 +43,7 @@ class Entity:
     colour: int
     path: ArcPath | None
     closed: bool
+    writing: Writing | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +89,15 @@ def _entity(entity: DXFEntity) -> Entity:
     elif isinstance(entity, Line):
         ends = [(end.x, end.y) for end in (entity.dxf.start, entity.dxf.end)]
         path = _path(ends, [0.0, 0.0], closed=False)
+    writing = _writing(entity) if isinstance(entity, Text) else None
     # colour 256: as the layer
-    return Entity(entity.dxftype(), str(entity.dxf.layer), int(entity.dxf.get("color", 256)), path, closed)
+    return Entity(entity.dxftype(), str(entity.dxf.layer), int(entity.dxf.get("color", 256)), path, closed, writing)
+
+
+def _writing(entity: Text) -> Writing:
+    """Return a text with its point of alignment, whatever that is of its box."""
+    _, at, _ = entity.get_placement()
+    return Writing(str(entity.dxf.text), at.x, at.y, float(entity.dxf.height), float(entity.dxf.rotation))
 
 
 def _polyline(entity: LWPolyline) -> ArcPath | None:

@@ -1,6 +1,6 @@
 """Job files with something wrong, and the lines that say so."""
 
-from tests.pipeline.jobs import PLATE, STOCK
+from tests.pipeline.jobs import CONE, PLATE, STOCK
 
 CYLINDER = """\
 schema = 1
@@ -90,6 +90,19 @@ BAD: dict[str, tuple[str, list[str]]] = {
             'job.toml:21:8: part[1].name: "SHELL" is taken (upper and lower case count as the same)',
         ],
     ),
+    "a name that a blank may take": (
+        PLATE
+        + CONE.replace('name = "cone"', 'name = "hood"\ncut = "auto"')
+        + CONE.replace('name = "cone"', 'name = "Hood.2"'),
+        [
+            'job.toml:18:8: part[2].name: "Hood.2" may be a blank of "hood" '
+            "(choose a name that does not end in a dot and a number)"
+        ],
+    ),
+    "a plate to be divided": (
+        PLATE.replace('"plate"', '"plate"\ncut = "auto"'),
+        ['job.toml:6:7: part[0].cut: a plate has no rulings to be divided along (leave it out, or write "none")'],
+    ),
     "duplicate stock": (
         PLATE + STOCK + STOCK,
         ['job.toml:15:6: stock[1].id: "sheet" is taken (upper and lower case count as the same)'],
@@ -129,7 +142,8 @@ BAD: dict[str, tuple[str, list[str]]] = {
         "schema = 1\nmaterial = 3\n[units]\n[[part]]\nname = []\nsurface = 3\n",
         [
             "job.toml:2:12: material: 3 where a table belongs "
-            "(a table with the keys name, thickness, density, bend_radius_min, max_strain)",
+            "(a table with the keys name, thickness, density, bend_radius_min, max_strain, k_factor, yield_strength, "
+            "youngs_modulus)",
             'job.toml:3:1: units: a table is not allowed (one of "cm", "in", "m", "mm")',
             "job.toml:5:8: part[0].name: an array of 0 where a text from 1 to 80 characters belongs",
             "job.toml:6:11: part[0].surface: 3 where a table belongs (write a table with a kind)",
@@ -153,11 +167,8 @@ BAD: dict[str, tuple[str, list[str]]] = {
         ],
     ),
     "a key of the future": (
-        PLATE + '[process]\ntype = "laser"\n',
-        [
-            'job.toml:9:1: process: unknown key (one of "schema", "part", "units", "job", "material", "stock", '
-            '"nest", "tolerance", "dxf", "report")'
-        ],
+        PLATE + '[process]\nkerf_compensation = "offset"\n',
+        ['job.toml:10:1: process.kerf_compensation: unknown key (one of "type", "kerf", "min_hole", "min_web")'],
     ),
     "a dotted key and an inline table": (
         'schema = 1\njob.nam = "x"\npart = [{ name = "a", surface = { kind = "cone", radius0 = 3, hight = 2 } }]\n',

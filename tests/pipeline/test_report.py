@@ -105,6 +105,44 @@ def test_names_that_no_file_system_takes_stay_in_the_report_and_leave_the_files(
     assert set(produced) == {"report.json", "flat/Bo.dxf", "cut/S-1-1.dxf"}
 
 
+WOUND = """\
+[[part]]
+name = "wound"
+quantity = 2
+cut = "auto"
+[part.surface]
+kind = "cone"
+apex = [0, 0, 0]
+fraction = [0, 0.5]
+directrix = { polyline = [[10, 0, 0], [5, 5, 8], [0, 10, 0], [-5, 5, -8], [-10, 0, 0], [-5, -5, 8], [0, -10, 0],
+                          [5, -5, -8], [10, 0, 0]] }
+"""
+"""A cone of 496 deg: two blanks."""
+
+
+def test_a_divided_part_has_an_entry_and_a_drawing_for_each_blank(tmp_path: Path) -> None:
+    report, produced = made(tmp_path, PLATE + STOCK + WOUND)
+    assert report["status"] == "made"
+    parts = report["parts"]
+    assert isinstance(parts, list)
+    assert [(part["name"], part["quantity"]) for part in parts] == [("plate", 1), ("wound.1", 2), ("wound.2", 2)]
+    assert {"flat/wound.1.dxf", "flat/wound.2.dxf"} < set(produced)
+    for number, row in enumerate(parts[1:]):
+        assert [step["stage"] for step in row["stages"]] == ["construct", "verify", "unroll"]
+        (found,) = [finding for finding in row["stages"][2]["findings"] if finding["code"] == "divided"]
+        assert found["where"] == {"v": 4.0 * number, "v_end": 4.0 * number + 4.0}
+        assert row["flat"]["area"] == pytest.approx(0.75 * 4 * 0.5 * 10 * 114**0.5 * sin_of_a_triangle(), rel=1e-12)
+    placed = entry(report, "nest", "sheets", 0, "placements")
+    assert isinstance(placed, list)
+    assert sorted(row["part"] for row in placed) == ["plate", *["wound.1"] * 2, *["wound.2"] * 2]
+
+
+def sin_of_a_triangle() -> float:
+    """Return the sine of the angle at the apex of the triangles of WOUND: between (10, 0, 0) and (5, 5, 8)."""
+    cosine = 50.0 / (10.0 * 114.0**0.5)
+    return float((1.0 - cosine**2) ** 0.5)
+
+
 def test_the_same_job_gives_the_same_bytes_but_for_run(tmp_path: Path) -> None:
     text = JOBS["nested"]
     (first, one), (second, two) = made(tmp_path, text), made(tmp_path, "# a remark\n" + text)

@@ -1,6 +1,7 @@
 """The flow of a job: which stage runs when, and what becomes of the job when one fails; stages are stubs."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from pipeline.jobfile import read
 from pipeline.run import JobResult, Step, run_job
 from stages.errors import NoSolutionError
 from stages.model.cutfile import CutFile
+from stages.model.material import Part
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from tests.pipeline.jobs import CONE, PLATE, STOCK, write_job
 
@@ -24,6 +26,17 @@ class Pattern:
 
     def replace(self, part: str) -> "Pattern":
         return Pattern(part)
+
+
+class Made:
+    """Stands for a surface and for its certificate: it knows its part."""
+
+    def __init__(self, part: Part) -> None:
+        self.part, self.name = part, part.name
+
+    @property
+    def surface(self) -> "Made":
+        return self
 
 
 class Nest:
@@ -45,9 +58,10 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         for name, stub in stubs.items():
             monkeypatch.setattr(f"stages.{name}.{name}", stub)
 
-    put(construct=lambda part, _: Outcome(part, StageReport("construct", part.name)))
+    put(construct=lambda part, _: Outcome(Made(part), StageReport("construct", part.name)))
     put(verify=lambda surface, _: Outcome(surface, StageReport("verify", surface.name)))
     put(unroll=lambda surface, _: Outcome(Pattern(surface.name), StageReport("unroll", surface.name)))
+    monkeypatch.setattr("stages.unroll.divide.blanks", lambda certificate, _: (certificate,))
     put(nest=stage("nest", Nest()), write=stage("write", (CutFile("flat/plate.dxf", "0"),)))
     return put
 
@@ -160,3 +174,41 @@ def test_a_defect_names_part_and_stage(stages: Callable[..., None], job: Job) ->
     with pytest.raises(ZeroDivisionError) as caught:
         run_job(job)
     assert caught.value.__notes__ == ["part 'plate', stage verify"]
+
+
+def blank_of(certificate: Made, number: int) -> Made:
+    return Made(replace(certificate.part, spec=certificate.part.spec.blank(number)))
+
+
+def test_a_divided_part_has_a_run_for_each_blank_and_shares_the_steps_before(
+    stages: Callable[..., None], job: Job, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def halves(certificate: Made, _: object) -> tuple[Made, ...]:
+        return (blank_of(certificate, 1), blank_of(certificate, 2)) if certificate.name == "cone" else (certificate,)
+
+    monkeypatch.setattr("stages.unroll.divide.blanks", halves)
+    heard: list[Step[object]] = []
+    result = run_job(job, heard.append)
+    assert [run.part.name for run in result.parts] == ["plate", "cone.1", "cone.2"]
+    assert [run.pattern.part for run in result.parts if run.pattern] == ["plate", "cone.1", "cone.2"]
+    first, second = result.parts[1:]
+    assert first.steps[:2] == second.steps[:2]
+    assert [step.report.subject for step in heard[3:7]] == ["cone", "cone", "cone.1", "cone.2"]
+    assert result.status == "made"
+
+
+def test_a_blank_that_cannot_be_unrolled_rejects_the_job_and_not_the_other_blank(
+    stages: Callable[..., None], job: Job, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unroll(certificate: Made, _: object) -> Outcome[object]:
+        found = (Finding("strain", "too much", fatal=True),) if certificate.name == "cone.2" else ()
+        pattern = None if found else Pattern(certificate.name)
+        return Outcome(pattern, StageReport("unroll", certificate.name, (), found))
+
+    monkeypatch.setattr(
+        "stages.unroll.divide.blanks", lambda certificate, _: tuple(blank_of(certificate, n) for n in (1, 2))
+    )
+    stages(unroll=unroll)
+    result = run_job(job)
+    assert [run.pattern is not None for run in result.parts] == [True, True, True, False]
+    assert (result.status, result.nest.status) == ("rejected", "skipped")

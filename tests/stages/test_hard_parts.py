@@ -52,7 +52,7 @@ CASES: dict[str, tuple[Table, str | None]] = {
     "profile that starts at rest": (
         cylinder({"bezier": [[0, 0, 0], [0, 0, 0], [1, 1, 0], [2, 0, 0]]}, [0, 0, 1]), None),
     "straight profile that stops and goes on": (
-        cylinder({"bezier": [[-1, 0, 0], [1, 0, 0], [-1, 0, 0], [1, 0, 0]]}, [0, 0, 1]), "verify"),
+        cylinder({"bezier": [[-1, 0, 0], [1, 0, 0], [-1, 0, 0], [1, 0, 0]]}, [0, 0, 1]), None),
     "direction along a tangent inside": (cylinder(CIRCLE, [1, 0, 0]), "verify"),
     "direction along a tangent at the end": (
         cylinder({"bezier": [[0, 0, 0], [1, 1, 0], [2, 0, 0.5]]}, [1, 1, 0]), None),

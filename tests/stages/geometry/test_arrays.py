@@ -2,12 +2,13 @@
 
 import copy
 import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from stages.geometry.arrays import Array, ArrayValue, cross2, dot, norm, unit
-from stages.geometry.curves import Bezier, RationalBezier
+from stages.geometry.curves import Bezier, rational
 from stages.geometry.development import develop
 from stages.geometry.plane import CircularArc, Segment
 from stages.geometry.rigid import Rigid2
@@ -18,7 +19,7 @@ from tests.parts import EXAMPLE_1, MITRED_CYLINDER, RIGHT_FRUSTUM, patches
 PATCH = patches(EXAMPLE_1)[0]
 VALUES: dict[str, ArrayValue] = {
     "bezier": PATCH.c0,
-    "rational": RationalBezier(np.ones((3, 3)), np.ones(3)),
+    "rational": rational([[Fraction(1)] * 4] * 3),
     "circular": patches(RIGHT_FRUSTUM)[0].c0,
     "along": patches(MITRED_CYLINDER)[0].p,
     "patch": PATCH,

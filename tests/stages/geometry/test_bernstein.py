@@ -4,25 +4,30 @@ from fractions import Fraction
 from itertools import pairwise
 from math import comb
 
+import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stages.geometry.arrays import EPS
 from stages.geometry.bernstein import (
     Polynomial,
     add,
     cross,
     derivative,
-    divide_ends,
     elevate,
-    end_zeros,
     from_bernstein,
     halves,
     inner,
+    lowered,
     multiply,
+    ratio,
+    rounded,
     subtract,
     vector_from_points,
     whole,
 )
+from tests.near import assert_near
 
 FRACTIONS = st.fractions(min_value=-100, max_value=100, max_denominator=1000)
 COEFFICIENTS = st.lists(FRACTIONS, min_size=1, max_size=7)
@@ -99,15 +104,34 @@ def test_vector_products_are_those_of_the_values(a: list[tuple[Fraction, ...]], 
 
 
 @settings(max_examples=30)
-@given(COEFFICIENTS.filter(any), st.integers(0, 3), st.integers(0, 3))
-def test_factors_at_the_ends_are_found_and_divided_out(coefficients: list[Fraction], a: int, b: int) -> None:
+@given(COEFFICIENTS)
+def test_a_degree_that_is_too_high_is_lowered_and_one_that_is_not_is_kept(coefficients: list[Fraction]) -> None:
     f = from_bernstein(coefficients)
-    with_zeros = Polynomial((0,) * a + f.scaled + (0,) * b, f.denominator)
-    own = end_zeros(f)
-    assert end_zeros(with_zeros) == (own[0] + a, own[1] + b)
-    rest = divide_ends(with_zeros, (a, b))
-    assert all(rest(v) * v**a * (1 - v) ** b == with_zeros(v) for v in PLACES)
-    assert end_zeros(Polynomial((0, 0, 0))) == (0, 0)
+    assert lowered(elevate(f, f.degree + 1)) == f
+    if _monomials(f)[-1]:
+        with pytest.raises(ValueError, match="full degree"):
+            lowered(f)
+
+
+@settings(max_examples=30)
+@given(COEFFICIENTS.filter(any), COEFFICIENTS.filter(any), st.integers(-900, 900))
+def test_quotients_in_floats_are_the_exact_ones_whatever_the_size(
+    a: list[Fraction], b: list[Fraction], power: int
+) -> None:
+    scale = Fraction(10) ** power
+    f, g = (_normal(from_bernstein([scale * x for x in row])) for row in (a, b))
+    places = [Fraction(k, 16) for k in range(17)]
+    found = ratio(rounded(f), rounded(g), np.array([float(v) for v in places]))
+    for v, value in zip(places, found, strict=True):
+        if abs(g(v)) > Fraction(1, 1000):
+            exact = float(f(v) / g(v))
+            bound = 64 * EPS * 1000 * (1 + abs(exact))
+            assert_near(float(value), exact, bound=bound, why="seven terms of at most 1, a divisor above 1/1000")
+
+
+def _normal(f: Polynomial) -> Polynomial:
+    """Return f over the power of 2 by which `rounded` divides it."""
+    return Polynomial(f.scaled, 1 << max(c.bit_length() for c in f.scaled))
 
 
 @settings(max_examples=30)

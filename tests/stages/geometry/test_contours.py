@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import EPS
-from stages.geometry.contours import area, length
+from stages.geometry.contours import area, area_and_centroid, length
 from stages.geometry.development import develop
 from stages.geometry.flatmap import DevelopedEdge
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
@@ -50,3 +50,15 @@ def test_a_developed_edge_has_the_length_of_its_curve() -> None:
             assert_near(
                 DevelopedEdge(piece, u, not reverse).at(np.array([1.0, 0.0])), ends, bound=0.0, why="same points"
             )
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e4])
+def test_the_centroid_is_that_of_the_area(shift: float) -> None:
+    half: list[PlaneCurve] = [CircularArc(np.array([shift, shift]), 3.0, 0.0, pi)]
+    half += [Segment(np.array([shift - 3.0, shift]), np.array([shift + 3.0, shift]))]
+    expected = [4.5 * pi, shift, shift + 4.0 / pi]
+    assert_near(area_and_centroid(half), expected, bound=64 * EPS * (10.0 + shift), why="4 r / (3 pi) above the centre")
+    backwards: list[PlaneCurve] = [CircularArc(np.array([shift, shift]), 3.0, pi, -pi)]
+    backwards += [Segment(np.array([shift + 3.0, shift]), np.array([shift - 3.0, shift]))]
+    found = area_and_centroid(backwards)
+    assert_near(found, [-4.5 * pi, *expected[1:]], bound=64 * EPS * (10.0 + shift), why="the same, clockwise")

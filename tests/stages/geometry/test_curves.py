@@ -22,17 +22,19 @@ from stages.geometry.curves import (
     difference,
     elevated,
     exactly,
+    homogeneous,
+    rational,
     restrict,
 )
 from tests.near import assert_near
-from tests.strategies import different_points, motions, rotation
+from tests.strategies import decimals, different_points, motions, rotation
 
 V = np.linspace(0.0, 1.0, 9)
 ROWS = np.array([[0.0, 1.0, 2.0], [3.0, -1.0, 0.5], [2.0, 2.0, -4.0], [5.0, 0.25, 1.0]])
 WEIGHTS = np.array([1.0, 2.5, 0.5, 1.5])
 CURVES: dict[str, Curve] = {
     "bezier": bezier([exactly(row) for row in ROWS]),
-    "rational": RationalBezier(ROWS * WEIGHTS[:, None], WEIGHTS),
+    "rational": rational([exactly([*(w * row), w]) for row, w in zip(ROWS, WEIGHTS, strict=True)]),
     "circular": Circular(ROWS[0], ROWS[1], ROWS[2], 0.1 * ROWS[3], 0.3, 4.0),
 }
 MATRIX = tuple(tuple(Fraction(n, 8) for n in row) for row in ((1, 2, -3), (0, 5, 8), (9, -2, 4)))
@@ -118,15 +120,14 @@ def test_the_difference_of_bezier_curves_is_exact_whatever_their_degrees(
 
 
 def test_curves_of_one_sort_keep_it_in_their_difference_and_others_are_subtracted_by_value() -> None:
-    circle, rational = CURVES["circular"], CURVES["rational"]
+    circle, spline, plain = CURVES["circular"], CURVES["rational"], CURVES["bezier"]
     assert isinstance(circle, Circular)
-    assert isinstance(rational, RationalBezier)
     other = circle.replace(centre=np.ones(3), U=np.array([1.0, 0.0, 0.0]))
     assert isinstance(difference(circle, other), Circular)
     assert isinstance(difference(circle, other.replace(sweep=1.0)), Difference)
-    assert isinstance(difference(rational, rational.replace(weighted=ROWS)), RationalBezier)
-    assert isinstance(difference(rational, circle), Difference)
-    for a, b in ((circle, other), (rational, rational.replace(weighted=ROWS)), (rational, circle)):
+    assert isinstance(difference(spline, plain), RationalBezier)
+    assert isinstance(difference(spline, circle), Difference)
+    for a, b in ((circle, other), (spline, plain), (plain, spline), (spline, circle)):
         assert_near(
             difference(a, b).jet(V, 2), a.jet(V, 2) - b.jet(V, 2), bound=64 * EPS * 200.0, why="derivatives up to 200"
         )
@@ -141,6 +142,63 @@ def test_a_rational_curve_far_from_the_origin_keeps_the_digits_of_its_derivative
     assert_near(roughness, np.zeros_like(roughness), bound=512 * EPS * 40.0, why="neighbours round as near the origin")
 
 
+HOMOGENEOUS = st.lists(
+    st.tuples(*[st.fractions(-10, 10, max_denominator=1000)] * 3, st.fractions(Fraction(1, 10), 5, max_denominator=50)),
+    min_size=2,
+    max_size=6,
+)
+
+
+def exact_point(curve: Curve, v: Fraction) -> list[Fraction]:
+    """Return the point at v in exact arithmetic."""
+    assert isinstance(curve, Bezier | RationalBezier)
+    x, y, z, w = blossom(homogeneous(curve), v, v)[0]
+    return [x / w, y / w, z / w]
+
+
+@settings(max_examples=8, deadline=None)
+@given(HOMOGENEOUS, HOMOGENEOUS, motions(), decimals(0, 1), decimals(0, 1))
+def test_images_parts_and_differences_of_rational_curves_are_exact(
+    rows: list[tuple[Fraction, ...]],
+    others: list[tuple[Fraction, ...]],
+    motion: tuple[tuple[tuple[Fraction, ...], ...], tuple[Fraction, ...]],
+    a: Fraction,
+    b: Fraction,
+) -> None:
+    a, b = min(a, b), max(a, b)
+    matrix, shift = motion
+    curve, other, plain = rational(rows), rational(others), bezier([row[:3] for row in others])
+    image, part = affine(curve, matrix, shift), restrict(curve, a, b)
+    for t in (Fraction(0), Fraction(1, 3), Fraction(1)):
+        here = exact_point(curve, t)
+        assert exact_point(image, t) == [
+            sum(m * x for m, x in zip(row, here, strict=True)) + d for row, d in zip(matrix, shift, strict=True)
+        ]
+        assert exact_point(part, t) == exact_point(curve, a + t * (b - a))
+        for second in (other, plain):
+            less = [x - y for x, y in zip(here, exact_point(second, t), strict=True)]
+            assert exact_point(difference(curve, second), t) == less
+            assert exact_point(difference(second, curve), t) == [-x for x in less]
+        shifted = rational([[2 * row[3] + row[0], *row[1:]] for row in rows])
+        assert exact_point(difference(shifted, curve), t) == [2, 0, 0], "the same weights"
+
+
+@pytest.mark.parametrize("factor", [1e-200, 1.0, 1e200])
+def test_only_the_ratios_of_weights_count(factor: float) -> None:
+    rows = homogeneous(CURVES["rational"])
+    scaled = rational([[Fraction(factor) * x for x in row] for row in rows])
+    assert_near(scaled.jet(V, 2), CURVES["rational"].jet(V, 2), bound=64 * EPS * 200.0, why="derivatives up to 200")
+
+
+def test_a_ruling_that_shrinks_to_nothing_keeps_its_direction() -> None:
+    """(1 - v) (1, 2, 3) over weights: near v = 1 a difference of two points would leave only rounding."""
+    steps = [Fraction(1), Fraction(2, 3), Fraction(1, 4), Fraction(0)]
+    weights = [Fraction(1), Fraction(3), Fraction(1, 2), Fraction(2)]
+    curve = rational([[w * s, 2 * w * s, 3 * w * s, w] for s, w in zip(steps, weights, strict=True)])
+    place = curve.jet(np.array([1.0 - 1e-13]), 0)[0, 0]
+    assert_near(place[1:] / place[0], [2.0, 3.0], bound=8 * EPS, why="each coordinate rounded by itself")
+
+
 def test_parallel_rulings_keep_their_direction_however_short_they_get() -> None:
     distance = Circular(np.array([1.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), *np.zeros((2, 3)), 0.0, 2.0)
     direction = np.array([0.3, 0.2, 1.0])
@@ -151,7 +209,11 @@ def test_parallel_rulings_keep_their_direction_however_short_they_get() -> None:
 
 def test_weights_that_are_not_positive_are_refused() -> None:
     with pytest.raises(ValueError, match="positive"):
-        RationalBezier(np.ones((2, 3)), np.array([1.0, 0.0]))
+        rational([[Fraction(1)] * 4, [Fraction(1)] * 3 + [Fraction(0)]])
+    one = CURVES["rational"]
+    assert isinstance(one, RationalBezier)
+    with pytest.raises(ValueError, match="as many exact as rounded"):
+        one.replace(exact=one.exact[:3])
 
 
 @settings(max_examples=20)

@@ -1,4 +1,4 @@
-"""The flat map: closed forms, 40-digit oracles by another formula, invariance, and what it refuses."""
+"""The map along rulings: closed forms, invariance, and what it refuses; against 40 digits in `unroll/test_figures`."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -8,18 +8,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mpmath import mp, mpf
 
 from stages.errors import NoSolutionError
 from stages.geometry import development
 from stages.geometry.arrays import EPS, Array, norm
-from stages.geometry.curves import Circular, bezier, elevated
+from stages.geometry.curves import Circular
 from stages.geometry.development import develop
-from stages.geometry.flatmap import DevelopedEdge, Development
-from stages.geometry.ruled import RuledPatch, between, part
-from tests import oracles
+from stages.geometry.flatmap import Development
+from stages.geometry.ruled import RuledPatch, between
 from tests.near import assert_near, assert_relative
-from tests.oracles import Space
 from tests.parts import (
     AUMANN_CUBIC,
     AUMANN_FIRST,
@@ -29,10 +26,20 @@ from tests.parts import (
     MITRED_CYLINDER,
     OBLIQUE_CONE,
     QUINTIC_TANGENT,
-    RIGHT_FRUSTUM,
     Table,
     aumann,
     patches,
+)
+from tests.rewritten import (
+    AT_REST,
+    UNEVEN,
+    Polynomial,
+    exchanged,
+    in_pieces,
+    raised,
+    reparametrised,
+    turned_around,
+    value,
 )
 from tests.strategies import motions, moved, scaled
 
@@ -128,58 +135,6 @@ def test_a_tangent_surface_of_a_helix_unrolls_to_circles() -> None:
     assert_near(flat(made), expected, bound=1e-13, why="1e-14 of 6 mm")
 
 
-# 40-digit oracles
-
-ELLIPSE = oracles.turning((0, 0, 0), (5, 0, 0), (0, 2, 0), (0, 0, 0), 2 * mp.pi)
-CIRCLE = oracles.turning((0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 0), 2 * mp.pi)
-OBLIQUE_TOP = oracles.turning(("1.125", "0.375", 3), ("0.5", 0, 0), (0, "0.5", 0), (0, 0, 0), 2 * mp.pi)
-STEP = mpf(3) / mp.sqrt(mpf(5) / 4)
-
-
-def lifted(v: mpf) -> oracles.Jet:
-    """The elliptic cylinder's upper edge: 3 mm along (0, 1/2, 1)."""
-    position, slope, bend = ELLIPSE(v)
-    return oracles.add(position, (mpf(0), STEP / 2, STEP)), slope, bend
-
-
-def pair(table: Table) -> tuple[Space, Space]:
-    c0, c1 = table["c0"], table["c1"]
-    assert isinstance(c0, dict)
-    assert isinstance(c1, dict)
-    return oracles.bezier(c0["bezier"]), oracles.bezier(c1["bezier"])
-
-
-ORACLES: dict[str, tuple[Table, tuple[Space, Space]]] = {
-    "quintic tangent surface": (QUINTIC_TANGENT, pair(QUINTIC_TANGENT)),
-    "Aumann's cubic": (AUMANN_CUBIC, pair(AUMANN_CUBIC)),
-    "oblique cone": (OBLIQUE_CONE, (CIRCLE, OBLIQUE_TOP)),
-    "elliptic cylinder, uneven speed": (ELLIPTIC_CYLINDER, (ELLIPSE, lifted)),
-}
-
-
-@pytest.mark.parametrize("name", ORACLES)
-def test_flat_positions_are_those_of_the_geodesic_curvature_at_40_digits(name: str) -> None:
-    table, (c0, c1) = ORACLES[name]
-    exact = oracles.flat_map(c0, c1)
-    u, v = np.tile([0.0, 0.6, 1.0], 4), np.repeat([0.1, 0.37, 0.8, 1.0], 3)
-    expected = np.array([exact(a, b) for a, b in zip(u, v, strict=True)], dtype=float)
-    size = float(np.abs(expected).max())
-    found = develop(patches(table)).pieces[0].positions(u, v)
-    assert_near(found, expected, bound=2e-14 * size, why="some 1e-14 of the size, as the module says")
-
-
-def test_the_oracle_agrees_with_a_closed_form() -> None:
-    top = oracles.turning((0, 0, 4), ("1.5", 0, 0), (0, "1.5", 0), (0, 0, 0), 2 * mp.pi)
-    base = oracles.turning((0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 0), 2 * mp.pi)
-    slant = mp.sqrt(mpf(4) ** 2 + mpf("1.5") ** 2)
-    assert abs(oracles.area(base, top) - mp.pi * mpf("4.5") * slant) < mpf(10) ** -30
-    assert abs(oracles.sector(base, (0, 0, 8)) - 2 * mp.pi * 3 / (2 * slant)) < mpf(10) ** -30
-    x, y = oracles.flat_map(base, top)(0, 1)
-    angle = 2 * mp.pi * mpf("1.5") / slant
-    reach = 2 * slant
-    assert abs(x - (reach - reach * mp.cos(angle))) + abs(y - reach * mp.sin(angle)) < mpf(10) ** -25
-
-
 # Invariance
 
 
@@ -205,24 +160,12 @@ def test_a_larger_surface_has_the_same_pattern_larger(table: Table, factor: Frac
     assert_near(large / float(factor), small, bound=bound, why="1e-14 of the size, twice")
 
 
-def turned_around(patch: RuledPatch) -> RuledPatch:
-    return between(*(bezier(c.exact[::-1]) for c in (patch.c0, patch.c1)))
-
-
-def raised(patch: RuledPatch) -> RuledPatch:
-    return between(*(bezier(elevated(c.exact, 8)) for c in (patch.c0, patch.c1)))
-
-
 SAME_SHAPE: dict[str, tuple[Callable[[RuledPatch], tuple[RuledPatch, ...]], Array, Array]] = {
     "the other way round": (lambda p: (turned_around(p),), GRID_U, 1.0 - GRID_V),
-    "edges exchanged": (lambda p: (between(p.c1, p.c0),), 1.0 - GRID_U, GRID_V),
+    "edges exchanged": (lambda p: (exchanged(p),), 1.0 - GRID_U, GRID_V),
     "a higher degree": (lambda p: (raised(p),), GRID_U, GRID_V),
-    "in two pieces": (
-        lambda p: (part(p, Fraction(0), Fraction(1, 2)), part(p, Fraction(1, 2), Fraction(1))), GRID_U, GRID_V,
-    ),
-    "in three pieces": (
-        lambda p: tuple(part(p, Fraction(i, 3), Fraction(i + 1, 3)) for i in range(3)), GRID_U, GRID_V,
-    ),
+    "in two pieces": (lambda p: in_pieces(p, 2), GRID_U, GRID_V),
+    "in three pieces": (lambda p: in_pieces(p, 3), GRID_U, GRID_V),
 }  # fmt: skip
 
 
@@ -234,6 +177,15 @@ def test_the_pattern_does_not_depend_on_how_the_surface_is_written(table: Table,
     expected = distances(flat(develop((patch,))))
     found = distances(flat(develop(rewritten(patch)), u, v))
     assert_near(found, expected, bound=4e-14 * float(expected.max()), why="1e-14 of the size on both sides")
+
+
+@pytest.mark.parametrize("inner", [UNEVEN, AT_REST])
+@pytest.mark.parametrize("table", SHAPES)
+def test_the_pattern_does_not_depend_on_the_parameter(table: Table, inner: Polynomial) -> None:
+    patch = patches(table)[0]
+    expected = flat(develop((patch,)), GRID_U, np.array([value(inner, v) for v in GRID_V], dtype=float))
+    found = flat(develop((reparametrised(patch, inner),)))
+    assert_near(found, expected, bound=4e-14 * float(distances(expected).max()), why="1e-14 of the size on both sides")
 
 
 # Frame, directions, refusals
@@ -254,27 +206,6 @@ def test_the_last_ruling_points_along_x_where_the_first_has_no_length() -> None:
     corners = flat(develop(patches(table)), np.array([0.0, 1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]))
     expected = [[0.0, 0.0], [0.0, 0.0], [4.0, 3.0], [0.0, 3.0]]
     assert_near(corners, expected, bound=1e-14, why="a triangle with its last ruling of 4 mm along x, at y = 3")
-
-
-@pytest.mark.parametrize("u", [0.0, 0.5, 1.0])
-@pytest.mark.parametrize(
-    "table",
-    [QUINTIC_TANGENT, OBLIQUE_CONE, RIGHT_FRUSTUM | {"radius1": 0}, RIGHT_FRUSTUM | {"radius0": 0},
-     {"kind": "ruled", "c0": {"line": [[0, 0, 0], [3, 0, 0]]}, "c1": {"line": [[0, 0, 0], [3, 4, 0]]}}],
-)  # fmt: skip
-def test_directions_of_edges_are_the_differences_of_positions_also_at_both_ends(table: Table, u: float) -> None:
-    piece = develop(patches(table)).pieces[0]
-    step = 1e-5
-    for reverse in (False, True):
-        edge = DevelopedEdge(piece, u, reverse)
-        t = np.array([0.0, 0.4, 1.0 - step])
-        quotient = (edge.at(t + step) - edge.at(t)) / step
-        middle = edge.derivative(t + step / 2.0)
-        size = float(norm(middle).max()) + 1.0
-        assert_near(middle, quotient, bound=size * (40 * step**2 + 1e-14 / step), why="a central difference")
-        ends = np.array([0.0, 1.0])
-        beside = edge.derivative(np.array([step, 1.0 - step]))
-        assert_near(edge.derivative(ends), beside, bound=size * 20 * step, why="the direction beside it, 20/mm at most")
 
 
 def test_parallel_rulings_stay_parallel_where_they_shrink_to_nothing() -> None:
@@ -317,13 +248,13 @@ def test_rulings_that_turn_without_end_are_refused_with_the_number_reached() -> 
         develop((folded,))
 
 
-@pytest.mark.parametrize("name", ["_chained", "MOST_TURN"])
+@pytest.mark.parametrize("name", ["_starts", "MOST_TURN"])
 def test_the_closed_forms_above_see_a_planted_fault(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     if name == "MOST_TURN":
         monkeypatch.setattr(development, "MOST_TURN", 100.0)
     else:
-        chained = development._chained
-        monkeypatch.setattr(development, "_chained", lambda local, start: chained(local, start) * (1.0 + 1e-12))
+        starts = development._starts
+        monkeypatch.setattr(development, "_starts", lambda local, start: starts(local, start) * (1.0 + 1e-12))
     with pytest.raises(AssertionError):
         test_a_right_frustum_unrolls_to_its_sector(3, 0, 0, 360)
 

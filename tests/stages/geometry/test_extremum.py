@@ -27,7 +27,7 @@ def test_the_highest_of_many_waves_is_found(waves: int) -> None:
 
 
 def test_a_kink_is_found_within_a_step_of_the_last_pass() -> None:
-    assert_near(maximum(lambda v: -np.abs(v - 0.7071))[1], 0.7071, bound=5.1e-9, why="half of 1/96/4**8/16")
+    assert_near(maximum(lambda v: -np.abs(v - 0.7071))[1], 0.7071, bound=5.1e-9, why="half of 1/96/16**5")
 
 
 def test_a_step_function_gives_its_upper_value() -> None:

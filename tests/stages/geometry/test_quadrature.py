@@ -9,7 +9,7 @@ from numpy.polynomial import legendre
 from stages.errors import NoSolutionError
 from stages.geometry import quadrature
 from stages.geometry.arrays import EPS, Array, Values
-from stages.geometry.quadrature import ANTIDERIVATIVE, DIFFERENTIATION, NODES, ORDER, coefficients, integral, panels
+from stages.geometry.quadrature import ANTIDERIVATIVE, NODES, ORDER, coefficients, integral, panels
 from tests.near import assert_near, assert_relative
 
 INTEGRALS = {
@@ -46,13 +46,6 @@ def test_the_antiderivative_matrix_integrates_polynomials_from_the_left_end(degr
     x = np.linspace(-1.0, 1.0, 9)
     expected = (x ** (degree + 1) - (-1.0) ** (degree + 1)) / (degree + 1)
     assert_near(legendre.legval(x, made), expected, bound=64 * EPS, why="two sums of 16 terms")
-
-
-def test_the_differentiation_matrix_is_exact_on_polynomials() -> None:
-    for degree in range(ORDER):
-        slopes = degree * NODES ** max(degree - 1, 0)
-        bound = 4 * ORDER**2 * EPS * 8
-        assert_near(DIFFERENTIATION @ NODES**degree, slopes, bound=bound, why="entries up to N^2/2, 16 of them")
 
 
 def noise(v: Values) -> Array:

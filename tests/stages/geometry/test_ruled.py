@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from stages.geometry import ruled
-from stages.geometry.arrays import EPS, Array, dot, norm
+from stages.geometry.arrays import EPS, Array, dot, norm, unit
 from stages.geometry.curves import Circular, bezier, exactly
 from stages.geometry.ruled import RuledPatch, between, end_normals, frames
 from tests.near import assert_near, assert_relative
@@ -160,6 +160,23 @@ def test_points_of_a_patch_lie_on_its_rulings_and_a_part_has_the_same_points() -
     u = np.linspace(0.0, 1.0, 33)
     bound = 64 * EPS * 700.0
     assert_near(ruled.at(half, u, V), ruled.at(patch, u, 0.25 + V / 2.0), bound=bound, why="points up to 700 mm")
+
+
+def test_the_rulings_of_a_part_keep_their_direction_however_short() -> None:
+    """Restricted like the directrices: subtracted anew, rulings of 1e-9 mm would be off by 1e-6 rad."""
+    pipe: Table = {
+        "kind": "cylinder", "directrix": {"circle": {"center": [0, 0, 0], "radius": 10}},
+        "direction": ["0.3", "0.2", 1], "end_plane": {"point": [10, 0, 0], "normal": [1, 0, 1]},
+    }  # fmt: skip
+    patch = patches(pipe)[0]
+    beginning = ruled.part(patch, Fraction(0), Fraction(1, 1024))
+    near = np.array([1e-3, 1e-2, 0.5, 1.0])
+    here, there = beginning.p.jet(near, 1), patch.p.jet(near / 1024.0, 1)
+    assert 0.0 < norm(here[0]).min() < 1e-9
+    sense = np.sign(here[0][:, 2:])
+    assert_near(sense * unit(here[0]), np.tile(unit(np.array([0.3, 0.2, 1.0])), (4, 1)), bound=4 * EPS, why="one unit")
+    assert_near(here[0], there[0], bound=64 * EPS * 10.0, why="points of a circle of 10 mm")
+    assert_near(here[1] * 1024.0, there[1], bound=64 * EPS * 63.0, why="derivatives of 20 pi mm, by the share")
 
 
 class Spiral:

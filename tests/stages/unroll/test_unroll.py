@@ -10,7 +10,6 @@ from stages.geometry.arrays import norm
 from stages.geometry.contours import area, length
 from stages.model.material import Material
 from stages.model.tolerances import Tolerances
-from stages.unroll import outline
 from tests.near import assert_near, assert_relative
 from tests.parts import (
     AUMANN_CUBIC,
@@ -165,39 +164,47 @@ def test_the_cut_contour_stays_within_its_chord() -> None:
 # Distortion and refusals
 
 
-def test_example_2_is_strained_by_its_warp_and_of_class_metal() -> None:
-    """The middle of each ruling is unstrained, its ends by 1 - cos of what the normal turns from there."""
+def test_example_2_as_printed_is_of_class_metal_with_the_least_strain_it_can_have() -> None:
+    """Along the rulings its ends would be strained by 1 - cos(W / 2) at least: 4.1e-4.  Least strain: 6.2e-5."""
     found = passage(EXAMPLE_2_PRINTED, Tolerances(accept="metal"))
     assert found.refused_by is None
     half = np.radians(3.2849872165410023) / 2.0
-    assert 1.0 - cos(half) <= found.value("unroll", "max_strain") <= 1.0 - cos(2.0 * half)
+    strain = found.value("unroll", "max_strain")
+    assert isinstance(strain, float)
+    assert_relative([strain], [6.2e-5], bound=0.02, why="two digits are known")
+    assert strain < (1.0 - cos(half)) / 6.0
+    assert found.value("unroll", "strain_rms") < strain / 2.0
+    assert found.value("unroll", "flattening_error") <= 1e-7
     assert passage(EXAMPLE_2_PRINTED).refused_by == "verify"
 
 
-def saddle(warp_deg: float) -> Table:
-    rise = 100.0 * np.tan(np.radians(warp_deg) / 2.0)
+def long_saddle(warp_deg: float) -> Table:
+    """Return a strip ten times as long as wide, of that warp in the middle, where it is as good as a helicoid."""
+    rise = 1000.0 * np.tan(np.radians(warp_deg) / 2.0)
     return {
         "kind": "ruled",
-        "c0": {"bezier": [[-100, -100, rise], [100, -100, -rise]]},
-        "c1": {"bezier": [[-100, 100, -rise], [100, 100, rise]]},
+        "c0": {"bezier": [[-1000, -100, rise], [1000, -100, -rise]]},
+        "c1": {"bezier": [[-1000, 100, -rise], [1000, 100, rise]]},
     }
 
 
-@pytest.mark.parametrize("warp_deg", [0.1, 5.0, 10.0])
-def test_the_strain_of_a_saddle_is_that_of_half_its_warp(warp_deg: float) -> None:
-    """On a square the normal turns by half the warp from the middle of a ruling to its end: strain 1 - cos(W / 2)."""
-    found = passage(saddle(warp_deg), Tolerances(accept="leather"))
-    expected = 1.0 - cos(np.radians(warp_deg) / 2.0)
-    # nodes miss v = 1/2, where the warp is largest: by 0.01 of the parameter, so by 1e-3 of the strain
-    assert_relative([found.value("unroll", "max_strain")], [expected], bound=2e-3, why="closed form, at the nodes")
+@pytest.mark.parametrize("warp_deg", [0.1, 3.0])
+def test_a_long_twisted_strip_is_strained_by_a_twelfth_of_its_warp_squared(warp_deg: float) -> None:
+    """An edge at distance w/2 of a strip twisted by k a length is longer by k2 w2 / 8; the middle of all, by a third.
+
+    What is left is k2 w2 / 12, and the warp across is k w.
+    """
+    found = passage(long_saddle(warp_deg), Tolerances(accept="leather"))
+    expected = np.radians(warp_deg) ** 2 / 12.0
+    assert_relative([found.value("unroll", "max_strain")], [expected], bound=0.02, why="twist falls off along x, W4")
 
 
-@pytest.mark.parametrize(("warp_deg", "refused_by"), [(5.0, None), (5.2, "unroll"), (8.1, "verify")])
+@pytest.mark.parametrize(("warp_deg", "refused_by"), [(6.0, None), (6.6, "unroll"), (8.1, "verify")])
 def test_a_part_whose_strain_is_worse_than_its_warp_is_refused_by_unroll(
     warp_deg: float, refused_by: str | None
 ) -> None:
-    """1 - cos(W / 2) passes 1e-3 at W = 5.125 deg, the warp of class metal ends at 8."""
-    found = passage(saddle(warp_deg), Tolerances(accept="metal"))
+    """W2 / 12 passes 1e-3 at W = 6.28 deg, the warp of class metal ends at 8."""
+    found = passage(long_saddle(warp_deg), Tolerances(accept="metal"))
     assert found.refused_by == refused_by
     if refused_by == "unroll":
         assert found.codes("unroll", fatal=True) == ["strain"]
@@ -215,23 +222,6 @@ def test_a_sector_beyond_a_full_turn_overlaps_itself_and_is_refused_with_the_are
     triangle = 0.5 * 10.0 * sqrt(114.0) * np.sin(np.radians(angle))
     overlap = found.value("unroll", "overlap_mm2")
     assert 1.5 * triangle < overlap < 3 * triangle, "136 deg of 496 are two of eight triangles and a bit"
-
-
-def test_overlap_counts_each_cover_beyond_the_first_and_anything_inside_out() -> None:
-    def ring(*corners: tuple[float, float]) -> arcpath.ArcPath:
-        return arcpath.ArcPath(np.array(corners), np.zeros(len(corners)), closed=True)
-
-    square = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0))
-    assert outline.overlap(ring(*square), 0.05) == 0.0
-    inner = ((1.0, 1.0), (3.0, 1.0), (3.0, 3.0), (1.0, 3.0))
-    twice = ring(*square, (0.0, 0.0), *inner, (1.0, 1.0))
-    assert_near(outline.overlap(twice, 0.05), 4.0, bound=1e-12, why="the inner square, a second time")
-    thrice = ring(*square, (0.0, 0.0), *inner, *inner, (1.0, 1.0))
-    assert_near(outline.overlap(thrice, 0.05), 8.0, bound=1e-12, why="and a third time")
-    bow = ring((0.0, 0.0), (6.0, 6.0), (6.0, 0.0), (0.0, 6.0))
-    assert_near(outline.overlap(bow, 0.05), 9.0, bound=1e-12, why="one of two lobes is inside out")
-    hole = ring(*square[::-1])
-    assert outline.overlap(hole, 0.05) == 0.0
 
 
 @pytest.mark.parametrize("where", ["outline", "hole"])

@@ -1,0 +1,195 @@
+"""What is cut into, drawn on and notched into a part besides its outline: the tables of a job file for them.
+
+A place is `[u, v]` on a curved part, `[x, y]` on a plate, or `[x, y, z]` in space, whence it is pulled back onto the
+surface as it is given; the same holds for the points of a curve.  u and v are pure numbers, whatever the units of the
+job: u runs from 0 on c0 to 1 on c1, v from i to i + 1 on piece i.
+"""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from msgspec import Meta, field
+
+from stages.model.curves import (
+    CurveSpec,
+    PlanePoint,
+    Table,
+    Trouble,
+    coordinates,
+    dimensions,
+    is_flat,
+    not_positive,
+)
+from stages.model.scalars import Angle, Length, Number
+
+Name = Annotated[str, Meta(max_length=80)]
+
+
+class CircleHole(Table, frozen=True, kw_only=True, tag_field="kind", tag="circle"):
+    """A circle of the flat pattern about a place."""
+
+    at: PlanePoint
+    diameter: Length
+    name: Name = ""
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a diameter that makes no circle."""
+        yield from not_positive(self, "diameter")
+
+
+class DrilledHole(Table, frozen=True, kw_only=True, tag_field="kind", tag="drill"):
+    """What a cylinder along the normal at a place cuts out of the surface: round in space, not in the pattern."""
+
+    at: PlanePoint
+    diameter: Length
+    name: Name = ""
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a diameter that makes no cylinder."""
+        yield from not_positive(self, "diameter")
+
+
+class CurveHole(Table, frozen=True, kw_only=True, tag_field="kind", tag="curve"):
+    """A hole bounded by a closed curve; one in space is pulled back onto the surface point by point."""
+
+    curve: CurveSpec
+    name: Name = ""
+
+
+HoleSpec = CircleHole | DrilledHole | CurveHole
+
+
+class RulingMarks(Table, frozen=True, kw_only=True, tag_field="kind", tag="rulings"):
+    """Lines to be etched: `count` rulings at equal turning of the normal, or one per `max_angle` of turning."""
+
+    name: Name = "rulings"
+    count: Annotated[int, Meta(ge=1, le=10_000)] | None = None
+    max_angle: Angle | None = None
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield neither or both of count and max_angle."""
+        if (self.count is None) == (self.max_angle is None):
+            yield Trouble("count", "exactly one of count and max_angle", "say how many rulings are marked")
+        if self.max_angle is not None and self.max_angle <= 0:
+            yield Trouble("max_angle", f"{float(self.max_angle):g} deg", "must be above 0")
+
+
+class PointMark(Table, frozen=True, kw_only=True, tag_field="kind", tag="point"):
+    """A cross of two lines, `size` from tip to tip, along the ruling and across it; cut off where the part ends."""
+
+    at: PlanePoint
+    size: Length = field(default_factory=lambda: Length(4))
+    name: Name = ""
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a size that makes no cross."""
+        yield from not_positive(self, "size")
+
+
+class CurveMark(Table, frozen=True, kw_only=True, tag_field="kind", tag="curve"):
+    """A curve to be etched, open or closed; one in space is pulled back onto the surface point by point."""
+
+    curve: CurveSpec
+    name: Name = ""
+
+
+class TextMark(Table, frozen=True, kw_only=True, tag_field="kind", tag="text"):
+    """A text with its middle at a place; `angle` turns it counter-clockwise from the ruling (from x on a plate)."""
+
+    at: PlanePoint
+    text: Annotated[str, Meta(min_length=1, max_length=200)]
+    height: Length
+    angle: Angle = field(default_factory=Angle)
+    name: Name = ""
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a height of nothing and letters that a drawing does not hold."""
+        yield from not_positive(self, "height")
+        if not (self.text.isascii() and self.text.isprintable()):
+            yield Trouble("text", "letters that are not ASCII", "cutting software reads plain letters only")
+
+
+MarkSpec = RulingMarks | PointMark | CurveMark | TextMark
+
+
+class NotchSpec(Table, frozen=True, kw_only=True):
+    """A notch in an edge, at a parameter of it (`at`) or at a length along the given surface's edge (`distance`).
+
+    kind: "v" is cut into the outline, `width` wide and `depth` deep; "slit" is a line on MARK, `depth` into the part:
+    what a knife cuts with its notch tool, and what a laser only etches.
+    edge: c0 and c1 run with v, start and end (first and last ruling) with u; a plate has "outline", by distance only.
+    """
+
+    edge: Literal["c0", "c1", "start", "end", "outline"]
+    kind: Literal["v", "slit"] = "v"
+    at: Number | None = None
+    distance: Length | None = None
+    width: Length = field(default_factory=lambda: Length(3))
+    depth: Length = field(default_factory=lambda: Length(3))
+    name: Name = ""
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a place that is missing, doubled or off the edge, and sizes that are no notch."""
+        yield from not_positive(self, "width", "depth")
+        if (self.at is None) == (self.distance is None):
+            yield Trouble("at", "exactly one of at and distance", "say where on the edge the notch is")
+        if self.edge == "outline" and self.at is not None:
+            yield Trouble("at", "an outline has no parameter", "give distance, from the beginning of the outline")
+        if self.distance is not None and self.distance < 0:
+            yield Trouble("distance", f"{float(self.distance):g} mm", "may not be negative")
+        most = 1 if self.edge in ("start", "end") else None
+        if self.at is not None and (self.at < 0 or (most is not None and self.at > most)):
+            yield Trouble("at", f"{float(self.at):g}", "u from 0 to 1" if most else "v from 0 on")
+
+
+Feature = HoleSpec | MarkSpec | NotchSpec
+
+
+def name_of(feature: Feature, number: int) -> str:
+    """Return the name of a feature; without one of its own what it is and its number among its kind."""
+    if isinstance(feature, CircleHole | DrilledHole | CurveHole):
+        return feature.name or f"hole-{number}"
+    return feature.name or (f"notch-{number}" if isinstance(feature, NotchSpec) else f"mark-{number}")
+
+
+def feature_troubles(
+    holes: Sequence[HoleSpec], marks: Sequence[MarkSpec], notches: Sequence[NotchSpec], *, plate: bool
+) -> Iterator[Trouble]:
+    """Yield what the features of a part break that only shows beside its kind of surface."""
+    for key, features in (("hole", holes), ("mark", marks)):
+        for i, feature in enumerate(features):
+            for trouble in _troubles(feature, plate=plate):
+                yield trouble._replace(key=f"{key}[{i}].{trouble.key}")
+    for i, notch in enumerate(notches):
+        if (notch.edge == "outline") != plate:
+            hint = "a plate has outline only" if plate else "one of c0, c1, start, end"
+            yield Trouble(f"notch[{i}].edge", f'no edge "{notch.edge}" on this kind', hint)
+
+
+def _troubles(feature: HoleSpec | MarkSpec, *, plate: bool) -> Iterator[Trouble]:
+    if isinstance(feature, RulingMarks):
+        if plate:
+            yield Trouble("kind", "a plate has no rulings", "mark points, curves or texts")
+        return
+    if isinstance(feature, CurveHole | CurveMark):
+        if len(dimensions(feature.curve)) > 1:
+            yield Trouble("curve", "points of two and of three coordinates", "the same for all points of a curve")
+        if not plate and is_flat(feature.curve):
+            yield from _with_unit("curve", feature.curve)
+    elif not plate and len(feature.at) == len("uv"):
+        yield from _with_unit("at", feature.at)
+        if not any(x.plain is None for x in feature.at):
+            yield from _off_surface(*(x.plain or Fraction(0) for x in feature.at))
+
+
+def _with_unit(key: str, value: object) -> Iterator[Trouble]:
+    if any(x.plain is None for x in coordinates(value)):
+        yield Trouble(key, "u and v with a unit", "on a curved part [u, v] are pure numbers; [x, y, z] are lengths")
+
+
+def _off_surface(u: Fraction, v: Fraction) -> Iterator[Trouble]:
+    if not 0 <= u <= 1:
+        yield Trouble("at[0]", f"u = {float(u):g}", "u runs from 0 on c0 to 1 on c1; lengths take [x, y, z]")
+    if v < 0:
+        yield Trouble("at[1]", f"v = {float(v):g}", "v runs from 0 on the first ruling, by 1 on each piece")

@@ -1,0 +1,298 @@
+"""Holes, marks, texts and notches of a part in its flat pattern.
+
+    on_strip(surface, development, outer) -> Features        on_plate(plate, outer, holes) -> Features
+
+What construct placed in u and v goes through the flat map: a place becomes a point, a curve an exact edge that is
+evaluated through the map (`stages.geometry.mapped`); a circle of the flat pattern is an exact circle, a drilled hole
+the image of the curve in which the cylinder meets the surface (`stages.geometry.drill`).  Of a part that was divided,
+a blank takes what lies on it; what a cut would go through is refused.
+
+Marks do not reach beyond the outline: the arms of a cross end there.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stages.geometry import biarc, contours
+from stages.geometry.arcpath import ArcPath, polygon
+from stages.geometry.arrays import Array, Vector2, cross2, norm, unit
+from stages.geometry.drill import drilled
+from stages.geometry.flatmap import Development
+from stages.geometry.mapped import FlatStrip, images
+from stages.geometry.plane import CircularArc, PlaneCurve, stretch
+from stages.geometry.strip import Strip
+from stages.model.features import (
+    CircleHole,
+    CurveHole,
+    CurveMark,
+    DrilledHole,
+    NotchSpec,
+    PointMark,
+    RulingMarks,
+    TextMark,
+)
+from stages.model.pattern import Contour, Mark, Text
+from stages.model.report import Finding, Metric
+from stages.model.surface import Placed, Plate, RuledSurface
+from stages.unroll import outline
+from stages.unroll.marks import ruling_marks
+from stages.unroll.notches import Notch, Notched, notched
+from stages.unroll.notches import on_outline as notch_on_outline
+from stages.unroll.notches import on_strip as notch_on_strip
+from stages.unroll.webs import judged
+
+Row = dict[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class Features:
+    """What is cut into and drawn on a pattern, its outline with notches, and what was found; rows for the report."""
+
+    outer: Contour
+    inner: tuple[Contour, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    texts: tuple[Text, ...] = ()
+    metrics: tuple[Metric, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    mark_rows: list[Row] = field(default_factory=list)
+    hole_rows: list[Row] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class Flat:
+    """A feature in the plane: its edges, or the point that it is at and the direction of the ruling there (x)."""
+
+    placed: Placed
+    edges: tuple[PlaneCurve, ...] = ()
+    at: Vector2 | None = None
+    along: Vector2 | None = None
+
+
+def on_strip(surface: RuledSurface, development: Development, outer: Contour) -> Features:
+    """Return the features of a strip, or of a blank of one, through its flat map.
+
+    surface: the one that was developed (the neutral surface), with the part's v in its `spans`.
+    Raises NoSolutionError where a curve is not resolved or its arcs do not keep the chord.
+    """
+    knots = np.array([*(float(low) for low, _ in surface.spans), float(surface.spans[-1][1])])
+    flat, strip = FlatStrip(development.pieces, knots), Strip(surface.patches, knots)
+    found: list[Flat] = []
+    findings: list[Finding] = []
+    notches: list[Notch] = []
+    for one in surface.features:
+        here = _share(one, knots)
+        if here == CUT:
+            findings.append(_cut_through(one))
+        elif here == ON and isinstance(one.spec, NotchSpec):
+            notches.append(notch_on_strip(one, one.spec, knots))
+        elif here == ON:
+            made = _image(one, flat, strip)
+            if surface.divided and _crosses_cut(made, development):
+                findings.append(_cut_through(one))
+            elif isinstance(made, Finding):
+                findings.append(made)
+            else:
+                found.append(made)
+    rulings = [spec for spec in surface.part.spec.mark if isinstance(spec, RulingMarks)]
+    lines = tuple(mark for spec in rulings for mark in ruling_marks(development, spec, chord_mm=outer.chord_mm))
+    made_outer = notched(outer, notches)
+    return _assembled(surface, made_outer, found, findings, lines=lines)
+
+
+def on_plate(plate: Plate, outer: Contour, holes: tuple[Contour, ...]) -> Features:
+    """Return the features of a plate beside the holes of its surface."""
+    notches = [
+        notch_on_outline(one, one.spec, outer.edges) for one in plate.features if isinstance(one.spec, NotchSpec)
+    ]
+    found = [
+        _circle_hole(Flat(one, one.curve, one.at, np.array([1.0, 0.0])))
+        for one in plate.features
+        if not isinstance(one.spec, NotchSpec)
+    ]
+    off = [notch for notch in notches if isinstance(notch, Finding)]
+    made_outer = notched(outer, [notch for notch in notches if isinstance(notch, Notch)])
+    return _assembled(plate, made_outer, found, off, holes=holes)
+
+
+ON, OFF, CUT = "on", "off", "cut"
+SAMPLES = 257
+
+
+def _share(one: Placed, knots: Array) -> str:
+    """Return whether a feature lies on a blank, off it, or partly so, by its v."""
+    low, high = knots[0], knots[-1]
+    if one.at is not None:
+        # a place on a cut belongs to the blank that begins there
+        return ON if low <= one.at[1] < high or one.at[1] == high == np.floor(high) else OFF
+    v = np.concatenate([edge.at(np.linspace(0.0, 1.0, SAMPLES)) for edge in one.curve])[:, 1]
+    inside = (v >= low - ON_CUT) & (v <= high + ON_CUT)
+    return ON if inside.all() else CUT if inside.any() else OFF
+
+
+ON_CUT = 1e-9
+"""How far beyond an end of the blank, in v, a curve may run by rounding."""
+
+
+def _cut_through(one: Placed) -> Finding:
+    message = f"{one.name} lies on both sides of a ruling along which the part is divided"
+    return Finding("feature-cut", message, fatal=True, where={"feature": one.name})
+
+
+def _crosses_cut(made: Flat | Finding, development: Development) -> bool:
+    """Return whether a hole about a place crosses an end ruling of a blank; a drill that found no way round does."""
+    if isinstance(made, Finding):
+        return True
+    if made.at is None or not made.edges:
+        return False
+    u, flat = np.array([0.0, 1.0]), development.pieces
+    ends = (flat[0].positions(u, np.zeros(2)), flat[-1].positions(u, np.ones(2)))
+    t = np.linspace(0.0, 1.0, SAMPLES)
+    around = np.concatenate([edge.at(t) for edge in made.edges])
+    sides = [cross2(end[1] - end[0], around - end[0]) for end in ends]
+    return any(bool(side.min() < 0.0 < side.max()) for side in sides)
+
+
+def _image(one: Placed, flat: FlatStrip, strip: Strip) -> Flat | Finding:
+    """Return a feature through the flat map."""
+    if one.at is None:
+        return Flat(one, images(flat, one.curve))
+    u, v = one.at[:1], one.at[1:]
+    point, (along, _) = flat.positions(u, v)[0], flat.slopes(u, v)
+    if isinstance(one.spec, DrilledHole):
+        hole = drilled(strip, one.at, float(one.spec.diameter) / 2.0)
+        if hole is None:
+            message = f"{one.name}: the drill leaves the surface before it has come round"
+            return Finding("hole-outside", message, fatal=True, where={"feature": one.name})
+        return Flat(one, images(flat, (hole,)), point, unit(along)[0])
+    return _circle_hole(Flat(one, (), point, unit(along)[0]))
+
+
+def _circle_hole(made: Flat) -> Flat:
+    """Return the feature, with its circle if it is a hole that is round in the pattern; on a plate a drilled one is."""
+    spec, at = made.placed.spec, made.at
+    if at is None or not isinstance(spec, CircleHole | DrilledHole):
+        return made
+    circle = CircularArc(at, float(spec.diameter) / 2.0, 0.0, -2.0 * np.pi)
+    return Flat(made.placed, (circle,), at, made.along)
+
+
+def _assembled(
+    surface: RuledSurface | Plate,
+    made_outer: Notched,
+    found: Sequence[Flat],
+    findings: Sequence[Finding],
+    *,
+    lines: tuple[Mark, ...] = (),
+    holes: tuple[Contour, ...] = (),
+) -> Features:
+    """Return holes, marks and texts with what is to be said of them."""
+    outer = made_outer.outer
+    cut = [
+        (made, contours.area_and_centroid(made.edges))
+        for made in found
+        if isinstance(made.placed.spec, CircleHole | DrilledHole | CurveHole)
+    ]
+    empty = tuple(_empty(made) for made, (area, *_) in cut if abs(area) <= NO_AREA * outer.chord_mm**2)
+    fatal = (*findings, *made_outer.findings, *empty)
+    if any(finding.fatal for finding in fatal):
+        return Features(outer, findings=fatal)
+    inner = (*holes, *(_hole(made, area, outer.chord_mm) for made, (area, *_) in cut))
+    said = judged(outer, inner, surface.part.process)
+    marks = [mark for made in found for mark in _marks(made, outer)]
+    rows = [row for made in found if (row := _mark_row(made)) is not None]
+    rows += [_row(name, point, None) for name, point in made_outer.places]
+    hole_rows = [_hole_row(hole.name, contours.area_and_centroid(hole.edges), None) for hole in holes]
+    hole_rows += [_hole_row(made.placed.name, figures, made.placed.distance_mm) for made, figures in cut]
+    return Features(
+        outer,
+        inner,
+        (*lines, *marks, *made_outer.slits),
+        tuple(_text(made) for made in found if isinstance(made.placed.spec, TextMark)),
+        said.metrics,
+        (*fatal, *said.findings),
+        rows,
+        hole_rows,
+    )
+
+
+NO_AREA = 1e-6
+"""A hole below this share of the square of the chord encloses nothing."""
+
+
+def _empty(made: Flat) -> Finding:
+    name = made.placed.name
+    return Finding("no-area", f"{name} encloses no area", fatal=True, where={"feature": name})
+
+
+def _hole(made: Flat, area: float, chord_mm: float) -> Contour:
+    """Return a hole, clockwise; `area` with the sign of its sense."""
+    edges = made.edges
+    if area > 0.0:
+        edges = tuple(stretch(edge, 1.0, 0.0) for edge in edges[::-1])
+    return outline.contour(edges, chord_mm, made.placed.name)
+
+
+def _marks(made: Flat, outer: Contour) -> list[Mark]:
+    """Return the lines of a mark."""
+    name, spec = made.placed.name, made.placed.spec
+    if isinstance(spec, CurveMark):
+        return [Mark(name, _traced(made.edges, outer.chord_mm))]
+    if isinstance(spec, PointMark) and made.at is not None and made.along is not None:
+        x, y = made.along
+        arms = (float(spec.size) / 2.0 * np.array([x, y]), float(spec.size) / 2.0 * np.array([-y, x]))
+        return [Mark(name, path) for arm in arms for path in _clipped(made.at - arm, made.at + arm, outer)]
+    return []
+
+
+def _traced(edges: Sequence[PlaneCurve], chord_mm: float) -> ArcPath:
+    """Return the path of a curve: closed if it ends where it begins."""
+    first, last = edges[0].at(np.array([0.0]))[0], edges[-1].at(np.array([1.0]))[0]
+    if norm(first - last) <= biarc.ZERO_LENGTH_MM:
+        return biarc.trace(edges, accuracy=chord_mm)
+    parts = [biarc.fit(edge, accuracy=chord_mm) for edge in edges]
+    vertices = np.concatenate([*(part.vertices[:-1] for part in parts), parts[-1].vertices[-1:]])
+    return ArcPath(vertices, np.append(np.concatenate([part.bulges[:-1] for part in parts]), 0.0), closed=False)
+
+
+def _clipped(start: Vector2, end: Vector2, outer: Contour) -> list[ArcPath]:
+    """Return what of a line lies on the part, as far as that is longer than nothing."""
+    import shapely
+
+    region = shapely.Polygon(polygon(outer.path, accuracy=min(outer.chord_mm, CLIP_MM)))
+    left = shapely.LineString([start, end]).intersection(region)
+    lines = [np.asarray(line.coords) for line in getattr(left, "geoms", [left]) if line.length > biarc.ZERO_LENGTH_MM]
+    return [ArcPath(line[[0, -1]], np.zeros(2), closed=False) for line in lines]
+
+
+CLIP_MM = 0.01
+"""How near the outline the arm of a cross ends."""
+
+
+def _text(made: Flat) -> Text:
+    """Return a text in the frame of its ruling."""
+    spec, at, along = made.placed.spec, made.at, made.along
+    if not isinstance(spec, TextMark) or at is None or along is None:
+        raise ValueError(f"{made.placed.name} is no text with a place")
+    angle = float(np.degrees(np.arctan2(along[1], along[0]))) + float(spec.angle)
+    return Text(made.placed.name, spec.text, at, float(spec.height), angle)
+
+
+def _mark_row(made: Flat) -> Row | None:
+    """Return what the report says of a mark: its point, or where its curve begins."""
+    if not isinstance(made.placed.spec, PointMark | TextMark | CurveMark):
+        return None
+    at = made.at if made.at is not None else made.edges[0].at(np.array([0.0]))[0]
+    row = _row(made.placed.name, at, made.placed.distance_mm)
+    return row | {"length": contours.length(made.edges)} if made.edges else row
+
+
+def _row(name: str, at: Vector2, distance: float | None) -> Row:
+    return {"name": name, "x": float(at[0]), "y": float(at[1]), "distance": distance or 0.0}
+
+
+def _hole_row(name: str, figures: tuple[float, float, float], distance: float | None) -> Row:
+    """Return name, exact area and centroid of a hole, and how far from the surface it was given."""
+    area, x, y = figures
+    return {"name": name, "area": abs(area), "x": x, "y": y, "distance": distance or 0.0}
