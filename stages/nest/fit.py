@@ -83,12 +83,18 @@ def fitting_angles(blank: Blank, bed: Bed) -> tuple[float, ...]:
     corners = hull(blank)
     grow = 2.0 * blank.grow_mm
     wanted = (bed.width_mm - grow, bed.height_mm - grow)
-    candidates = np.unique(np.concatenate(list(_critical_angles(corners, wanted))))
+    exact = np.concatenate(list(_critical_angles(corners, wanted)))
+    candidates = np.unique(np.concatenate([exact, exact - INSIDE_DEG, exact + INSIDE_DEG]))
     fitting = [angle for angle in candidates.tolist() if fits(turned(blank, angle), bed)]
     if not fitting:
         return ()
     best = min(fitting, key=lambda angle: turned(blank, angle).height_mm)
     return best, (best + 2.0 * QUARTER_DEG) % 360.0
+
+
+INSIDE_DEG = 1e-9
+"""A bound of the angles that fit may itself be refused by rounding, and so may the other; this far inside it is not.
+A part of 10 m changes its width by 2e-10 m over it."""
 
 
 def _critical_angles(corners: Points2, wanted: tuple[float, float]) -> Iterator[Array]:
