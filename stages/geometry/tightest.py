@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry import quadrature
-from stages.geometry.arrays import Values
+from stages.geometry.arrays import Values, norm
 from stages.geometry.turning import FLAT, PatchTurning, Turning, is_fold, rates
 
 
@@ -23,10 +23,30 @@ class Tight:
     u: float
 
 
-def tightest(bends: Turning, sign: float) -> Tight | None:
-    """Return where a strip bends most towards sign * N; None where it does not bend that way.  Folds do not count."""
+Edge = tuple[int, float]
+"""One edge of a strip: piece, and u = 0 or 1."""
+
+
+def apexes(bends: Turning) -> frozenset[Edge]:
+    """Return the edges that are points: all rulings of a piece meet there."""
+    edges = ((i, u) for i in range(len(bends.pieces)) for u in (0.0, 1.0))
+    return frozenset(edge for edge in edges if _is_point(bends.pieces[edge[0]], edge[1]))
+
+
+def _is_point(piece: PatchTurning, u: float) -> bool:
+    v = quadrature.nodes(piece.breaks[:-1], piece.breaks[1:]).ravel()
+    c0, c1 = (float(norm(curve.jet(v, 1)[1]).max()) for curve in (piece.patch.c0, piece.patch.c1))
+    return c0 <= APEX * c1 if u == 0.0 else c1 <= APEX * c0
+
+
+def tightest(bends: Turning, sign: float, beside: frozenset[Edge] = frozenset()) -> Tight | None:
+    """Return where a strip bends most towards sign * N, edges `beside` left out; None where it does not bend that way.
+
+    Folds do not count.
+    """
     bent = {s.piece for s in bends.stretches if sign * s.angle_rad > FLAT and not is_fold(s)}
-    found = [_tightest(bends.pieces[i], i, u, sign) for i in sorted(bent) for u in (0.0, 1.0)]
+    edges = [(i, u) for i in sorted(bent) for u in (0.0, 1.0) if (i, u) not in beside]
+    found = [_tightest(bends.pieces[i], i, u, sign) for i, u in edges]
     return max(found, key=lambda tight: tight.curvature, default=None)
 
 

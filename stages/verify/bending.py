@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from stages.errors import NoSolutionError
 from stages.geometry.planarity import is_planar
-from stages.geometry.tightest import Tight, tightest
-from stages.geometry.turning import turning
+from stages.geometry.tightest import Edge, Tight, apexes, tightest
+from stages.geometry.turning import Turning, turning
 from stages.model.material import Material
 from stages.model.report import Evidence, Finding, Metric, Where
 from stages.model.sheetface import Layers, layers
@@ -45,10 +45,16 @@ def bending(surface: RuledSurface) -> tuple[tuple[Metric, Metric], list[Finding]
     flat, proved = is_planar(surface.patches)
     if flat:
         return _nowhere("proved" if proved else "sampled"), []
-    found = sharpest(surface)
+    try:
+        bends = turning(surface.patches)
+    except NoSolutionError:  # a fold inside, or a normal that vanishes: refused elsewhere, its curvature still counts
+        bends = None
+    found = sharpest(surface, bends)
     if not isinstance(found, Sharpest):
         return _nowhere("sampled"), [found] if isinstance(found, Finding) else []
     material = surface.part.material
+    points = frozenset() if bends is None else apexes(bends)
+    judged = sharpest(surface, bends, points) if points and found.given_mm == 0.0 else found
     inside = max(found.inside_mm, 0.0)
     strain = None if material.thickness_mm is None else _strain(material.thickness_mm, found.middle_mm)
     shown = strain if strain is not None and strain < float("inf") else None
@@ -56,8 +62,26 @@ def bending(surface: RuledSurface) -> tuple[tuple[Metric, Metric], list[Finding]
         Metric("min_bend_radius_mm", inside, "mm", "sampled", None, found.where),
         Metric("outer_fibre_strain", shown, "", "sampled", material.max_strain, found.where),
     )
-    checked = [*_radius_findings(inside, material, found), *_strain_findings(strain, material, found.where)]
-    return metrics, [*checked, *_unchecked(material)]
+    checked = _judged(judged, material) if isinstance(judged, Sharpest) else []
+    return metrics, [*checked, *_apex_findings(found, judged), *_unchecked(material)]
+
+
+def _judged(bend: Sharpest, material: Material) -> list[Finding]:
+    """Hold the sharpest bend against the material."""
+    strain = None if material.thickness_mm is None else _strain(material.thickness_mm, bend.middle_mm)
+    radius = _radius_findings(max(bend.inside_mm, 0.0), material, bend)
+    return [*radius, *_strain_findings(strain, material, bend.where)]
+
+
+def _apex_findings(found: Sharpest, judged: Sharpest | Finding | None) -> list[Finding]:
+    """Say that the part ends in an apex; its other edges are what the material is asked about."""
+    if judged is found:
+        return []
+    rest = ""
+    if isinstance(judged, Sharpest):
+        rest = f"; along the edges that are none the inside radius is at least {max(judged.inside_mm, 0.0):.4g} mm"
+    message = f"rulings meet in an apex, where the sheet bends to nothing{rest}: cut the tip off, or crease it"
+    return [Finding("sharp-apex", message, False, found.where)]
 
 
 def _nowhere(evidence: Evidence) -> tuple[Metric, Metric]:
@@ -65,20 +89,23 @@ def _nowhere(evidence: Evidence) -> tuple[Metric, Metric]:
     return Metric("min_bend_radius_mm", None, "mm", evidence), Metric("outer_fibre_strain", None, "", evidence)
 
 
-def sharpest(surface: RuledSurface) -> Sharpest | Finding | None:
-    """Return the sharpest bend, None where there is none; a finding where the face does not exist on the surface."""
+def sharpest(
+    surface: RuledSurface, bends: Turning | None, beside: frozenset[Edge] = frozenset()
+) -> Sharpest | Finding | None:
+    """Return the sharpest bend, None where there is none; a finding where the face does not exist on the surface.
+
+    bends: how it turns, None where that is not known.  beside: edges that do not count.
+    """
     thickness = surface.part.material.thickness_mm or 0.0
     face = surface.part.spec.face
-    try:
-        bends = turning(surface.patches)
-    except NoSolutionError:  # a fold inside, or a normal that vanishes: refused elsewhere, its curvature still counts
+    if bends is None:
         return _unsigned(surface, thickness)
     sheet = layers(face, bends, thickness)
     if isinstance(sheet, Finding):
         v = float((sheet.where or {}).get("v", 0.0))
         piece = min(int(v), len(surface.patches) - 1)
         return Finding(sheet.code, sheet.message, True, {"v": surface.v_of(piece, v - piece)})
-    both = [(sign, found) for sign in (1.0, -1.0) if (found := tightest(bends, sign)) is not None]
+    both = [(sign, found) for sign in (1.0, -1.0) if (found := tightest(bends, sign, beside)) is not None]
     every = [_radii(surface, sign, tight, sheet) for sign, tight in both if _bends(tight, surface.size_mm)]
     return min(every, key=lambda bend: bend.inside_mm, default=None)
 

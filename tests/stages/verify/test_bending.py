@@ -65,6 +65,18 @@ def test_an_inside_face_that_folds_over_itself_is_reported() -> None:
     assert "bend-radius" in limited.codes("verify", fatal=True)
 
 
+@pytest.mark.parametrize(("least", "refused"), [(60.0, False), (70.0, True)])
+def test_an_apex_is_reported_and_the_rest_of_its_cone_held_against_the_material(least: float, refused: bool) -> None:
+    """A right cone of radius 40 and height 30: at the rim the radius of curvature is 40 * 50 / 30 = 66.7."""
+    whole: Table = {"kind": "cone", "radius0": 40, "radius1": 0, "height": 30, "sweep": 270}
+    made = verified(whole, "middle", Material(thickness_mm=2.0, bend_radius_min_mm=least, max_strain=0.2))
+    rim = 40.0 * 50.0 / 30.0 - 1.0
+    assert made.value("verify", "min_bend_radius_mm") == 0.0
+    assert made.codes("verify", fatal=False) == ["sharp-apex"]
+    assert f"at least {rim:.4g} mm" in made.reports["verify"].findings[-1].message
+    assert (made.codes("verify", fatal=True) == ["bend-radius"]) is refused
+
+
 @pytest.mark.parametrize("table", [EXAMPLE_1])
 def test_a_plane_is_bent_nowhere(table: Table) -> None:
     made = verified(table, "inner", Material(thickness_mm=1.0))
