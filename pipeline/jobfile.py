@@ -23,6 +23,7 @@ from pipeline.units import JOB_UNITS
 from stages.errors import BadInputError, Problem
 from stages.model.curves import Table, Trouble, negatives, not_positive
 from stages.model.cutfile import Flavour, Version
+from stages.model.ducts import is_set
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
 from stages.model.tolerances import Class, Tolerances
@@ -204,8 +205,8 @@ class JobFile(Table, frozen=True, kw_only=True):
 
 
 def taken_by_blanks(parts: Sequence[PartSpec]) -> Iterator[Trouble]:
-    """Yield the names that a blank of a divided part may take, `<part>.<n>`."""
-    divided = {part.name.casefold() for part in parts if part.cut == "auto"}
+    """Yield the names that a blank of a divided part, or of a set, may take, `<part>.<n>`."""
+    divided = {part.name.casefold() for part in parts if part.cut == "auto" or is_set(part.surface)}
     for i, part in enumerate(parts):
         whole, _, number = part.name.casefold().rpartition(".")
         if number.isdecimal() and whole in divided:

@@ -135,7 +135,7 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
     Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
     """
     runner = Runner(listener)
-    parts = tuple(run for part in job.parts for run in run_part(runner, part, job))
+    parts = tuple(run for part in job.parts for run in run_set(runner, part, job))
     patterns = [run.pattern for run in parts if run.pattern is not None]
     nest: Step[Nesting] = skipped("nest", job.name)
     if job.stock and len(patterns) == len(parts):
@@ -150,6 +150,16 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
         named = names.patterns(patterns)
         write = runner.step("write", job.name, write_stage, named, names.nesting(nest.product), job.machine)
     return JobResult(job, parts, nest, write, runner.seconds)
+
+
+def run_set(runner: Runner, part: "Part", job: Job) -> "tuple[PartRun, ...]":
+    """Return the blanks of one part as far as they get, the seams between them compared."""
+    from pipeline.sets import with_seams
+    from stages.construct.sets import parts_of, seams_of
+
+    runs = [run for piece in parts_of(part) for run in run_part(runner, piece, job)]
+    seams = seams_of(part)
+    return with_seams(runs, seams, job.tolerances) if seams else tuple(runs)
 
 
 def run_part(runner: Runner, part: "Part", job: Job) -> "tuple[PartRun, ...]":

@@ -178,6 +178,40 @@ def aumann_pairs() -> st.SearchStrategy[Table]:
     return st.builds(aumann, different_points(4).map(list), points(), shares, shares.filter(lambda mu: mu != "0"))
 
 
+def bezier_pairs() -> st.SearchStrategy[Table]:
+    """Return pairs of any degree by their keys, most with the edge of regression outside."""
+    shares = st.sampled_from(["1.8", "2.3", "1", "0", "-1", "-0.25", "0.5"])
+    return st.builds(
+        lambda rows, first, lam, mu, elevate: {
+            "kind": "bezier-pair", "points": [texts(row) for row in rows], "first": texts(first), "lambda": lam,
+            "mu": mu, "elevate": elevate,
+        },
+        st.integers(2, 6).flatmap(different_points), points(), shares, shares, st.integers(0, 2),
+    )  # fmt: skip
+
+
+def tangents() -> st.SearchStrategy[Table]:
+    reach = st.sampled_from([("0", "3"), ("0.5", "2"), ("-4", "-1"), ("20", "10")])
+    return st.builds(
+        lambda edge, distances: {"kind": "tangent", "edge": edge, "from": distances[0], "to": distances[1]},
+        curves(), reach,
+    )  # fmt: skip
+
+
+def slopes() -> st.SearchStrategy[Table]:
+    """Return slopes over any curve, half of them over level ones."""
+    level = st.builds(
+        lambda rows, key: {key: [[str(x), str(y), "3"] for x, y, _ in rows]},
+        different_points(4), st.sampled_from(["bezier", "points", "polyline"]),
+    )  # fmt: skip
+    return st.builds(
+        lambda curve, angle, side, length: {
+            "kind": "slope", "curve": curve, "angle": str(angle), "side": side, "length": str(length),
+        },
+        st.one_of(level, curves()), st.integers(-90, 90), st.sampled_from(["in", "out"]), decimals(0.1, 9, 1),
+    )  # fmt: skip
+
+
 def cones() -> st.SearchStrategy[Table]:
     fraction = st.sampled_from([["0", "1"], ["0", "0.5"], ["0.25", "0.9"]])
     return st.builds(
@@ -233,5 +267,5 @@ def surfaces() -> st.SearchStrategy[Table]:
     """Return a specification of any kind, developable or not."""
     return st.one_of(
         quintic_ruled(), quintic_planar(), quintic_cylinder(), quintic_cone(given=True), quintic_strip(), ruled(),
-        aumann_pairs(), cones(), frusta(), cylinders(), plates(),
+        aumann_pairs(), cones(), frusta(), cylinders(), plates(), bezier_pairs(), tangents(), slopes(),
     )  # fmt: skip

@@ -131,10 +131,16 @@ def _part(run: PartRun, measured: Figures | None) -> Document:
         "quantity": run.part.spec.quantity,
         "class": class_of(run),
         "flat": detail.get("flat") if passed else None,
-        "surface": detail.get("surface") if passed else None,
+        "surface": _surface(detail) if passed else None,
         **_figures(measured),
         "stages": [{"stage": step.report.stage, **_step(step)} for step in run.steps],
     }
+
+
+def _surface(detail: Document) -> object:
+    """Return the figures of the surface, with the pieces that a strip between rails is made of."""
+    figures = detail.get("surface")
+    return {**figures, "pieces": detail["pieces"]} if isinstance(figures, dict) and "pieces" in detail else figures
 
 
 def class_of(run: PartRun) -> str:

@@ -148,17 +148,22 @@ def _blossom(rows: list[list[Fraction]], knots: Row, n: int, arguments: Row, low
 
 def interpolated(points: np.ndarray) -> Chain:
     """Return the cubic spline through points, shape (n, 3): C2, chord-length parameter, not-a-knot or periodic."""
+    chords = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
+    return spline(points, chords, closed=bool(np.array_equal(points[0], points[-1])))
+
+
+def spline(points: np.ndarray, parameters: np.ndarray, *, closed: bool) -> Chain:
+    """Return the C2 cubic spline through points, shape (n, 3), at given parameters: periodic if closed, else
+    not-a-knot."""
     from scipy.interpolate import CubicSpline
 
-    chords = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
-    closed = bool(np.array_equal(points[0], points[-1]))
-    slopes = CubicSpline(chords, points, bc_type="periodic" if closed else "not-a-knot")(chords, 1)
+    slopes = CubicSpline(parameters, points, bc_type="periodic" if closed else "not-a-knot")(parameters, 1)
     curves = []
-    for i, step in enumerate(np.diff(chords)):
+    for i, step in enumerate(np.diff(parameters)):
         a, b = points[i], points[i + 1]
         rows = (a, a + step / 3.0 * slopes[i], b - step / 3.0 * slopes[i + 1], b)
         curves.append(bezier([exactly(row) for row in rows]))
-    return Chain(tuple(curves), tuple(Fraction(float(c)) / Fraction(float(chords[-1])) for c in chords))
+    return Chain(tuple(curves), tuple(Fraction(float(c)) / Fraction(float(parameters[-1])) for c in parameters))
 
 
 def ends(curve: Curve) -> tuple[Vector3, Vector3]:
@@ -175,8 +180,13 @@ def largest_gap(link: Chain) -> float:
 
 def ruled_patches(c0: Chain, c1: Chain) -> tuple[RuledPatch, ...]:
     """Return patches between two chains, equal parameter to equal parameter, split at the breaks of both."""
-    breaks = sorted({*c0.breaks, *c1.breaks})
-    return tuple(between(_over(c0, low, high), _over(c1, low, high)) for low, high in pairwise(breaks))
+    return tuple(between(a, b) for a, b in common_pieces(c0, c1))
+
+
+def common_pieces(a: Chain, b: Chain) -> list[tuple[Curve, Curve]]:
+    """Return both chains, split at the breaks of either."""
+    breaks = sorted({*a.breaks, *b.breaks})
+    return [(_over(a, low, high), _over(b, low, high)) for low, high in pairwise(breaks)]
 
 
 def _over(link: Chain, low: Fraction, high: Fraction) -> Curve:

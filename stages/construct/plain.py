@@ -50,9 +50,9 @@ def frustum(spec: Cone) -> RuledPatch:
 def cylinder_patches(spec: Cylinder, directrix: Chain) -> tuple[RuledPatch, ...]:
     """Return the cylinder over every piece of the directrix, between its two ends."""
     d = vector(spec.direction)
-    start = _meeting(spec.start_plane, d) if spec.start_plane else (ZERO, Fraction(0))
+    start = meeting(spec.start_plane, d) if spec.start_plane else (ZERO, Fraction(0))
     if spec.end_plane:
-        end = _meeting(spec.end_plane, d)
+        end = meeting(spec.end_plane, d)
     else:
         size = float(norm(np.array([float(x) for x in d])))
         end = (start[0], start[1] + exactly([float(spec.length or 0) / size])[0])
@@ -67,7 +67,7 @@ Reach = tuple[Vector, Fraction]
 """A step along the direction as a function of the point r it starts from: row . r + constant."""
 
 
-def _meeting(plane: Plane, d: Vector) -> Reach:
+def meeting(plane: Plane, d: Vector) -> Reach:
     """Return the step along d that reaches the plane: ((P - r).n) / (d.n)."""
     n, point = vector(plane.normal), vector(plane.point)
     across = sum((a * b for a, b in zip(d, n, strict=True)), Fraction(0))

@@ -19,7 +19,8 @@ from math import isqrt
 
 from stages.geometry.curves import Bezier, ExactPoint, affine, bezier
 from stages.geometry.ruled import RuledPatch, between
-from stages.model.quintics import NextPatch, QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled
+from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled
+from stages.model.quinticstrip import NextPatch
 
 Vector = tuple[Fraction, Fraction, Fraction]
 ZERO: Vector = (Fraction(0), Fraction(0), Fraction(0))
@@ -112,7 +113,7 @@ def planar_ends(spec: QuinticPlanar) -> tuple[tuple[End, End], tuple[End, End]]:
     tangent = unit_exact(combine((1, q0), (-1, p0)))
 
     def end(name: str, suffix: str) -> End:
-        alpha, beta = Fraction(getattr(spec, f"alpha{suffix}")), Fraction(getattr(spec, f"beta{suffix}"))
+        alpha, beta = Fraction(getattr(spec, f"alpha{suffix}") or 0), Fraction(getattr(spec, f"beta{suffix}") or 0)
         return End(vector(getattr(spec, name)), tangent, ZERO, Fraction(0), alpha, beta)
 
     return (end("p0", "0"), end("p1", "1")), (end("q0", "0_hat"), end("q1", "1_hat"))
@@ -121,8 +122,8 @@ def planar_ends(spec: QuinticPlanar) -> tuple[tuple[End, End], tuple[End, End]]:
 def cylinder_ends(spec: QuinticCylinder, *, normalise: bool) -> tuple[tuple[End, End], tuple[End, End]]:
     """Return the ends that Theorem 2.2 derives: beta = s alpha, Q1 = P1 + g (Q0 - P0), and the rest of a hat equal."""
     start, end = (_end(spec, f"p{i}", i, normalise=normalise) for i in "01")
-    start = with_beta(start, Fraction(spec.s0) * start.alpha)
-    end = with_beta(end, Fraction(spec.s1) * end.alpha)
+    start = with_beta(start, Fraction(spec.s0 or 0) * start.alpha)
+    end = with_beta(end, Fraction(spec.s1 or 0) * end.alpha)
     ruling = combine((1, vector(spec.q0)), (-1, start.P))
     return (start, end), (moved(start, ruling), moved(end, combine((Fraction(spec.g), ruling))))
 

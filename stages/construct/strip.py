@@ -23,48 +23,50 @@ from stages.construct.quintic import (
     second_derivative,
     vector,
 )
+from stages.construct.shape import Patch
 from stages.model.quintics import (
     SHAPE_KEYS,
-    NextPatch,
     QuinticCone,
     QuinticCylinder,
     QuinticPlanar,
     QuinticRuled,
-    QuinticStrip,
 )
+from stages.model.quinticstrip import NextPatch
 
 EndPair = tuple[End, End]
 Pair = tuple[EndPair, EndPair | None]
 """Ends of c0 and of c1; None where c1 follows from an apex."""
 
 
-def strip_ends(spec: QuinticStrip, first_detail: dict[str, object], *, normalise: bool) -> list[Pair]:
-    """Return the ends of both directrices of every patch of a strip."""
-    pairs = [_first(spec, first_detail, normalise=normalise)]
-    for patch in spec.next:
-        pairs.append(_following(spec, pairs[-1], patch, normalise=normalise))
+def strip_ends(
+    first: Patch, following: Sequence[NextPatch], first_detail: dict[str, object], *, normalise: bool
+) -> list[Pair]:
+    """Return the ends of both directrices of every patch of a strip, the first one settled."""
+    pairs = [_first(first, first_detail, normalise=normalise)]
+    for patch in following:
+        pairs.append(_following(first, pairs[-1], patch, normalise=normalise))
     return pairs
 
 
-def _first(spec: QuinticStrip, first_detail: dict[str, object], *, normalise: bool) -> Pair:
-    match spec.first:
+def _first(first: Patch, first_detail: dict[str, object], *, normalise: bool) -> Pair:
+    match first:
         case QuinticRuled():
-            return ruled_ends(spec.first, normalise=normalise)
+            return ruled_ends(first, normalise=normalise)
         case QuinticPlanar():
-            return planar_ends(spec.first)
+            return planar_ends(first)
         case QuinticCylinder():
-            return cylinder_ends(spec.first, normalise=normalise)
+            return cylinder_ends(first, normalise=normalise)
         case QuinticCone():
             shape = first_detail["shape"]
             if not isinstance(shape, dict):
                 raise TypeError("a cone's detail holds its shape parameters by name")
-            return cone_ends(spec.first, [Fraction(shape[key]) for key in SHAPE_KEYS], normalise=normalise), None
+            return cone_ends(first, [Fraction(shape[key]) for key in SHAPE_KEYS], normalise=normalise), None
 
 
-def _following(spec: QuinticStrip, before: Pair, patch: NextPatch, *, normalise: bool) -> Pair:
+def _following(first: Patch, before: Pair, patch: NextPatch, *, normalise: bool) -> Pair:
     """Return the ends of the patch after `before`."""
     c0_start, point = before[0][1], vector(patch.p1)
-    if isinstance(spec.first, QuinticCylinder):
+    if isinstance(first, QuinticCylinder):
         alpha = Fraction(patch.alpha1)
         end = next_end(patch, "", Fraction(patch.s1 or 0) * alpha, point, normalise=normalise)
         c1_before = before[1]

@@ -47,6 +47,14 @@ def coefficients_c(patch: RuledPatch) -> tuple[tuple[Fraction, ...], ...]:
     return tuple(tuple(-c / 5 for c in row) for row in zip(*components, strict=True))
 
 
+def coefficients(patches: tuple[RuledPatch, ...]) -> dict[str, object]:
+    """Return every A_i and C~_i of every patch, rounded once."""
+    return {
+        "A": [[float(a) for a in coefficients_a(patch)] for patch in patches],
+        "C_tilde": [[[float(c) for c in row] for row in coefficients_c(patch)] for patch in patches],
+    }
+
+
 def _scaled(f: Polynomial, degree: int) -> tuple[Fraction, ...]:
     f = bernstein.elevate(f, degree)
     return tuple(Fraction(c, f.denominator) for c in f.scaled)

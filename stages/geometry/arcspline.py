@@ -145,8 +145,10 @@ def _joined(stretch: Stretch, place: Plane, breaks: Joints, accuracy: float) -> 
         miss = 2.0 * along - heading[:-1] - heading[1:]
         if np.max(np.abs(miss)) <= MET:
             break
-        step_move, step_turn = _least_step(miss, chord, normal, free_move, free_turn)
-        move, turn = move + step_move, turn + step_turn
+        step = _least_step(miss, chord, normal, free_move, free_turn)
+        if step is None:
+            break
+        move, turn = move + step[0], turn + step[1]
     bulges = np.tan(np.diff(heading) / 4.0)
     return _Joined(np.stack([vertices.real, vertices.imag], axis=1), bulges, heading, float(np.max(np.abs(miss))))
 
@@ -174,8 +176,10 @@ def _freedom(stretch: Stretch, chord: Array, accuracy: float) -> tuple[Values, V
     return move, turn
 
 
-def _least_step(miss: Array, chord: Plane, normal: Plane, free_move: Array, free_turn: Array) -> tuple[Values, Values]:
-    """Return the least weighted step in y and phi that cancels the linearised misses.
+def _least_step(
+    miss: Array, chord: Plane, normal: Plane, free_move: Array, free_turn: Array
+) -> tuple[Values, Values] | None:
+    """Return the least weighted step in y and phi that cancels the linearised misses, if they can be told apart.
 
     d miss_k = a_k dy_k + b_k dy_(k+1) - dphi_k - dphi_(k+1); the weighted normal matrix is tridiagonal.
     """
@@ -186,8 +190,11 @@ def _least_step(miss: Array, chord: Plane, normal: Plane, free_move: Array, free
     diagonal = a**2 * free_move[:-1] + b**2 * free_move[1:] + free_turn[:-1] + free_turn[1:]
     upper = np.zeros_like(diagonal)
     upper[1:] = b[:-1] * a[1:] * free_move[1:-1] + free_turn[1:-1]
-    # one equation is no band: the solver refuses a matrix without neighbours
-    weight = -solveh_banded(np.stack([upper, diagonal]), miss) if miss.size > 1 else -miss / diagonal
+    try:
+        # one equation is no band: the solver refuses a matrix without neighbours
+        weight = -solveh_banded(np.stack([upper, diagonal]), miss) if miss.size > 1 else -miss / diagonal
+    except np.linalg.LinAlgError:  # equal equations up to rounding, where chords are far below the freedom to move
+        return None
     left, right = np.append(weight, 0.0), np.insert(weight, 0, 0.0)
     move = free_move * (np.append(a, 0.0) * left + np.insert(b, 0, 0.0) * right)
     return move, -free_turn * (left + right)

@@ -34,6 +34,19 @@ class Curve(Protocol):
         ...
 
 
+@runtime_checkable
+class Derived(Curve, Protocol):
+    """A curve made from others, which knows its own images and parts."""
+
+    def image(self, matrix: Sequence[Sequence[Fraction]], shift: Sequence[Fraction]) -> Curve:
+        """Return matrix @ curve + shift."""
+        ...
+
+    def part(self, low: Fraction, high: Fraction) -> Curve:
+        """Return the part over [low, high], with its parameter again in [0, 1]."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Bezier(ArrayValue):
     """A polynomial curve by its exact control points; `points` are the same in float64."""
@@ -185,6 +198,8 @@ def affine(curve: Curve, matrix: Sequence[Sequence[Fraction]], shift: Sequence[F
     d = np.array([float(x) for x in shift])
     if isinstance(curve, Circular):
         return Circular(m @ curve.centre + d, m @ curve.U, m @ curve.V, m @ curve.W, curve.start, curve.sweep)
+    if isinstance(curve, Derived):
+        return curve.image(matrix, shift)
     raise ValueError(f"no affine image of a {type(curve).__name__}")
 
 
@@ -210,6 +225,8 @@ def restrict(curve: Curve, low: Fraction, high: Fraction) -> Curve:
         return Along(restrict(curve.distance, low, high), curve.direction)
     if isinstance(curve, Difference):
         return Difference(restrict(curve.a, low, high), restrict(curve.b, low, high))
+    if isinstance(curve, Derived):
+        return curve.part(low, high)
     raise ValueError(f"no part of a {type(curve).__name__}")
 
 

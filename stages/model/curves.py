@@ -189,6 +189,13 @@ def is_flat(curve: CurveSpec) -> bool:
     return len("xy") in dimensions(curve)
 
 
+def plane_curves(spec: Table, *keys: str) -> Iterator[Trouble]:
+    """Yield the curves with points of two coordinates."""
+    for key in keys:
+        if is_flat(getattr(spec, key)):
+            yield Trouble(key, "a point with two coordinates", "give x, y and z; two are enough on flat parts only")
+
+
 def dimensions(curve: CurveSpec) -> set[int]:
     """Return by how many coordinates the points of the curve are given: 2, 3, or both where they are mixed."""
     plain = [*(curve.bezier or ()), *(curve.points or ()), *(curve.polyline or ()), *(curve.line or ())]

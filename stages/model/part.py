@@ -5,16 +5,21 @@ those of the job file.  The paper's patches are in `stages.model.quintics`.
 """
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from msgspec import Meta, field
 from msgspec.structs import replace
 
-from stages.model.curves import CurveSpec, Table, Trouble, is_flat
+from stages.model.curves import CurveSpec, Table, Trouble, plane_curves
+from stages.model.developables import BezierPair, Slope, Tangent
+from stages.model.ducts import Elbow, Saddle, Tee, Transition, is_set
+from stages.model.envelopes import Ribbon, Strap
 from stages.model.face import Face
 from stages.model.features import HoleSpec, MarkSpec, NotchSpec, feature_troubles
 from stages.model.forming import BendSpec
-from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled, QuinticStrip, bad_fraction
+from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled, bad_fraction
+from stages.model.quinticstrip import QuinticStrip
+from stages.model.rails import Rails
 from stages.model.scalars import Angle, Direction, Length, Number, Point, is_zero
 
 
@@ -29,13 +34,6 @@ class Ruled(Table, frozen=True, kw_only=True, tag_field="kind", tag="ruled"):
         yield from plane_curves(self, "c0", "c1")
         if self.c0 == self.c1:
             yield Trouble("c1", "the same curve as c0", "the two curves must differ")
-
-
-def plane_curves(spec: Table, *keys: str) -> Iterator[Trouble]:
-    """Yield the curves with points of two coordinates."""
-    for key in keys:
-        if is_flat(getattr(spec, key)):
-            yield Trouble(key, "a point with two coordinates", "give x, y and z; two are enough on flat parts only")
 
 
 class Flat(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat"):
@@ -100,17 +98,22 @@ class Plane(Table, frozen=True, kw_only=True):
 
 
 class Cylinder(Table, frozen=True, kw_only=True, tag_field="kind", tag="cylinder"):
-    """Parallel rulings over any directrix, cut by length or by planes."""
+    """Parallel rulings over any directrix, cut by length, by planes, or by a pipe that crosses at `length`."""
 
     directrix: CurveSpec
     direction: Direction
     length: Length | None = None
     start_plane: Plane | None = None
     end_plane: Plane | None = None
+    saddle: Saddle | None = None
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield a direction of length 0 and an end that is missing, doubled or at no distance."""
         yield from plane_curves(self, "directrix")
+        if self.saddle is not None and not {"circle", "arc", "ellipse"} & {*self.directrix.sorts()}:
+            yield Trouble("saddle", "on a directrix that has no centre", "give a circle, an arc or an ellipse")
+        if self.saddle is not None and self.end_plane is not None:
+            yield Trouble("saddle", "beside end_plane", "the rulings end on one of them")
         if is_zero(self.direction):
             yield Trouble("direction", "the vector has length 0", "give the direction of the rulings")
         if (self.length is None) == (self.end_plane is None):
@@ -123,12 +126,21 @@ class Cylinder(Table, frozen=True, kw_only=True, tag_field="kind", tag="cylinder
                 yield Trouble(f"{key}.normal", "the plane is parallel to the direction", "the rulings never meet it")
 
 
-SurfaceSpec = (
-    QuinticRuled | QuinticPlanar | QuinticCylinder | QuinticCone | QuinticStrip | Ruled | Flat | Cone | Cylinder
-)
-KINDS: tuple[type[Table], ...] = (
-    QuinticRuled, QuinticPlanar, QuinticCylinder, QuinticCone, QuinticStrip, Ruled, Flat, Cone, Cylinder,
+PieceSpec = (
+    QuinticRuled | QuinticPlanar | QuinticCylinder | QuinticCone | QuinticStrip | Ruled | Cone | Cylinder
+    | BezierPair | Tangent | Slope | Strap | Ribbon | Rails | Transition
 )  # fmt: skip
+"""The kinds that make one ruled surface of one blank: those that may be pieces of a strip."""
+
+
+class Strip(Table, frozen=True, kw_only=True, tag_field="kind", tag="strip"):
+    """Surfaces of other kinds joined along their end rulings; each is turned such that it joins the one before."""
+
+    pieces: Annotated[tuple[PieceSpec, ...], Meta(min_length=1)]
+
+
+SurfaceSpec = PieceSpec | Strip | Flat | Elbow | Tee
+KINDS: tuple[type[Table], ...] = get_args(SurfaceSpec)
 
 
 class PartSpec(Table, frozen=True, kw_only=True):
@@ -161,6 +173,9 @@ class PartSpec(Table, frozen=True, kw_only=True):
             yield Trouble("bend", "a plate does not bend", "leave it out")
         if len(self.bend) > 1:
             yield Trouble("bend[1]", "a second set of bend lines", "a part is bent in one way: leave one of them out")
+        for key in ("hole", "mark", "notch") if is_set(self.surface) else ():
+            if getattr(self, key):
+                yield Trouble(key, "which of the blanks is meant is not said", "give that blank as a part of its own")
 
     def blank(self, number: int) -> "PartSpec":
         """Return the specification of one piece of the divided part, `<part>.<n>`."""

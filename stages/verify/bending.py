@@ -55,14 +55,15 @@ def bending(surface: RuledSurface) -> tuple[tuple[Metric, Metric], list[Finding]
     material = surface.part.material
     points = frozenset() if bends is None else apexes(bends)
     judged = sharpest(surface, bends, points) if points and found.given_mm == 0.0 else found
-    inside = max(found.inside_mm, 0.0)
-    strain = None if material.thickness_mm is None else _strain(material.thickness_mm, found.middle_mm)
+    # at an apex no strain is defined: that of the other edges counts
+    bend = judged if isinstance(judged, Sharpest) else None
+    strain = None if bend is None or material.thickness_mm is None else _strain(material.thickness_mm, bend.middle_mm)
     shown = strain if strain is not None and strain < float("inf") else None
     metrics = (
-        Metric("min_bend_radius_mm", inside, "mm", "sampled", None, found.where),
-        Metric("outer_fibre_strain", shown, "", "sampled", material.max_strain, found.where),
+        Metric("min_bend_radius_mm", max(found.inside_mm, 0.0), "mm", "sampled", None, found.where),
+        Metric("outer_fibre_strain", shown, "", "sampled", material.max_strain, None if bend is None else bend.where),
     )
-    checked = _judged(judged, material) if isinstance(judged, Sharpest) else []
+    checked = [] if bend is None else _judged(bend, material)
     return metrics, [*checked, *_apex_findings(found, judged), *_unchecked(material)]
 
 

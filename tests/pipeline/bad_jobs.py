@@ -1,5 +1,6 @@
 """Job files with something wrong, and the lines that say so."""
 
+from pipeline.kinds import kind_names
 from tests.pipeline.jobs import CONE, PLATE, STOCK
 
 CYLINDER = """\
@@ -32,6 +33,7 @@ def replaced(*pairs: tuple[str, str], text: str = CYLINDER) -> str:
     return text
 
 
+ALL_KINDS = ", ".join(f'"{name}"' for name in kind_names())
 VECTOR = "an array of 3 numbers is needed"
 LENGTH = 'a length such as 12.5, "12.5 mm" or "1/8 in"'
 BAD: dict[str, tuple[str, list[str]]] = {
@@ -58,9 +60,9 @@ BAD: dict[str, tuple[str, list[str]]] = {
         ],
     ),
     "a tangent of length zero, and another error in the same table": (
-        replaced(("[0.6, -0.8, 0]", "[0, 0, 0]"), ("  s0 = 1\n", "")),
+        replaced(("[0.6, -0.8, 0]", "[0, 0, 0]"), ("  g = 1\n", "")),
         [
-            "job.toml:4:3: part[0].surface.s0: missing (a number is needed)",
+            "job.toml:4:3: part[0].surface.g: missing (a number is needed)",
             "job.toml:10:8: part[0].surface.t1: the tangent has length 0 (give the direction of the curve at this end)",
         ],
     ),
@@ -114,15 +116,13 @@ BAD: dict[str, tuple[str, list[str]]] = {
     "no kind": (
         replaced(('  kind = "quintic-cylinder"\n', "")),
         [
-            'job.toml:4:3: part[0].surface.kind: missing (one of "quintic-ruled", "quintic-planar", '
-            '"quintic-cylinder", "quintic-cone", "quintic-strip", "ruled", "flat", "cone", "cylinder")'
+            f"job.toml:4:3: part[0].surface.kind: missing (one of {ALL_KINDS})",
         ],
     ),
     "a kind that is no text": (
         replaced(('kind = "quintic-cylinder"', "kind = 3")),
         [
-            'job.toml:5:10: part[0].surface.kind: unknown kind 3 (one of "quintic-ruled", "quintic-planar", '
-            '"quintic-cylinder", "quintic-cone", "quintic-strip", "ruled", "flat", "cone", "cylinder")'
+            f"job.toml:5:10: part[0].surface.kind: unknown kind 3 (one of {ALL_KINDS})",
         ],
     ),
     "wrong words and ranges": (

@@ -104,6 +104,14 @@ def test_a_hard_part_is_made_or_refused_with_a_reason(name: str) -> None:
     assert made.refused_by == refused_by, {k: v.findings for k, v in made.reports.items()}
 
 
+SPECK = [
+    ["0", "0.001", "-0.001"],
+    ["0.002", "-0.002", "0.003"],
+    ["-0.003", "0.004", "-0.004"],
+    ["0.005", "-0.005", "0.006"],
+]
+LONG_TANGENTS: Table = {"kind": "tangent", "edge": {"points": SPECK}, "from": 0, "to": 3}
+"""An edge of 0.02 mm that turns by 355 deg: in its pattern chords are far below the freedom that arcs have to move."""
 CALM = {"deadline": None, "suppress_health_check": (HealthCheck.too_slow, HealthCheck.filter_too_much)}
 PHASES = (Phase.explicit, Phase.generate)
 """No shrinking: a part takes up to a second, and a random one is small already."""
@@ -121,6 +129,7 @@ def assert_sound_or_short(table: Table) -> None:
 @settings(max_examples=80, phases=PHASES, **CALM)
 @given(surfaces())
 @example(QUINTIC_TANGENT)
+@example(LONG_TANGENTS)
 def test_any_part_is_made_or_refused_with_a_reason(table: Table) -> None:
     assert_sound_or_short(table)
 

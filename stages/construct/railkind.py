@@ -1,0 +1,136 @@
+"""From the rails of a job file to the best developable strip between them, or the reason why there is none.
+
+A refusal names the fold that no strip avoids (a lower bound, taken on two lattices), where that is, and the strip with
+the fewest folds that there is.
+"""
+
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from stages.construct.curves import Chain, chain, ends
+from stages.construct.rails import Piece, pieces, rows
+from stages.geometry.arrays import Values, norm
+from stages.geometry.extremum import maximum
+from stages.geometry.joins import join
+from stages.geometry.railgraph import Rules
+from stages.geometry.railstrip import Rail, Strip, bounds, closed_strip, open_strip
+from stages.geometry.ruled import RuledPatch, curvature
+from stages.model.rails import Rails
+from stages.model.report import Finding
+from stages.model.tolerances import Tolerances
+
+ANY_FOLD = np.pi
+STILL_SMOOTH_DEG = 1e-6
+"""A fold of less is none: what exact corners leave to rounding is 1e-12."""
+
+
+def rail_strip(spec: Rails, tol: Tolerances) -> tuple[tuple[RuledPatch, ...], tuple[Finding, ...], dict[str, object]]:
+    """Return the patches of the strip, what was found, and its pieces; no patches if there is no strip."""
+    a, b = chain(spec.rail_a), chain(spec.rail_b)
+    closed = [_is_closed(rail, tol) for rail in (a, b)]
+    if closed[0] != closed[1]:
+        return (), (Finding("open-and-closed", "one rail is open and the other is closed", True),), {}
+    fold = ANY_FOLD if spec.folds == "allow" else float(np.radians(float(spec.max_warp)))
+    found = best_strip(a.curves, b.curves, Rules(fold), closed=closed[0])
+    if found is None:
+        return (), (_refusal(a.curves, b.curves, closed=closed[0]),), {}
+    made = pieces(found)
+    patches = tuple(piece.patch for piece in made)
+    findings = (*_folds(patches), *_apexes(made), *_too_sharp(made, spec))
+    return patches, findings, {"pieces": rows(found, made)}
+
+
+def best_strip(rail_a: Rail, rail_b: Rail, rules: Rules, *, closed: bool) -> Strip | None:
+    """Return a strip without folds if there is one, else the best that the rules allow."""
+    search = closed_strip if closed else open_strip
+    smooth = search(rail_a, rail_b, Rules(0.0))
+    return search(rail_a, rail_b, rules) if smooth is None and rules.fold_rad > 0.0 else smooth
+
+
+def _is_closed(rail: Chain, tol: Tolerances) -> bool:
+    first, last = ends(rail.curves[0])[0], ends(rail.curves[-1])[1]
+    return float(norm(first - last)) <= tol.join_mm
+
+
+def _refusal(rail_a: Rail, rail_b: Rail, *, closed: bool) -> Finding:
+    """Return why there is no strip: the fold that none avoids, its place, and what would help."""
+    folded = best_strip(rail_a, rail_b, Rules(ANY_FOLD), closed=closed)
+    least = f"; with folds the best strip has {_described(folded)}" if folded is not None else ""
+    if closed:
+        message = f"no tangent-continuous strip leads round between these rails{least}"
+        return Finding("no-smooth-strip", f'{message}: folds = "allow" makes it', True)
+    coarse, fine = bounds(rail_a, rail_b)
+    if fine.fold_rad > 0.0:
+        bound = f"every strip folds by at least {np.degrees(fine.fold_rad):.6g} deg somewhere"
+        check = f"(lower bound; {np.degrees(coarse.fold_rad):.6g} deg on half the lattice)"
+    else:
+        bound, check = "none was found", "(no lower bound on its folds is known)"
+    help_ = f"trim or extend the rails at {_place(fine.t, fine.s, len(rail_a), len(rail_b))}"
+    message = f'no tangent-continuous strip: {bound} {check}{least}; {help_}, or set folds = "allow"'
+    return Finding("no-smooth-strip", message, True, {"a": fine.t, "b": fine.s})
+
+
+def _described(strip: Strip) -> str:
+    """Return number and size of the folds of a strip."""
+    angles = _fold_angles(tuple(piece.patch for piece in pieces(strip)))
+    if not angles:
+        return "none to be measured"
+    count = f"{len(angles)} fold{'s' * (len(angles) > 1)}"
+    return f"{count}, the largest {max(angles):.6g} deg"
+
+
+def _fold_angles(patches: tuple[RuledPatch, ...]) -> list[float]:
+    angles = [float(np.degrees(join(a, b).normal_rad)) for a, b in pairwise(patches)]
+    return [angle for angle in angles if angle > STILL_SMOOTH_DEG]
+
+
+def _place(t: float, s: float, most_t: int, most_s: int) -> str:
+    """Return the place of a ruling in words."""
+    if min(t, s) <= 0.0:
+        return f"their beginning (a = {t:.3g}, b = {s:.3g})"
+    if t >= most_t or s >= most_s:
+        return f"their end (a = {t:.3g}, b = {s:.3g})"
+    return f"a = {t:.3g}, b = {s:.3g}"
+
+
+def _folds(patches: tuple[RuledPatch, ...]) -> tuple[Finding, ...]:
+    angles = _fold_angles(patches)
+    if not angles:
+        return ()
+    message = f"the strip folds along {len(angles)} ruling{'s' * (len(angles) > 1)}, by at most {max(angles):.6g} deg"
+    return (Finding("folds", message),)
+
+
+def _apexes(made: tuple[Piece, ...]) -> tuple[Finding, ...]:
+    """Say where cones bend infinitely sharply; plane triangles do not."""
+    bent = [i for i, piece in enumerate(made) if piece.kind == "cone"]
+    if not bent:
+        return ()
+    message = f"{len(bent)} of {len(made)} pieces are cones with their apex on a rail, where they bend to nothing"
+    return (Finding("apex-on-rail", message, where={"v": bent[0]}),)
+
+
+def _too_sharp(made: tuple[Piece, ...], spec: Rails) -> tuple[Finding, ...]:
+    """Refuse a strip that bends more sharply than `min_radius`."""
+    least = float(spec.min_radius)
+    if least == 0.0:
+        return ()
+    for i, piece in enumerate(made):
+        if piece.kind == "cone":
+            message = (
+                f"the best strip has a cone with its apex on a rail, which bends to nothing; min_radius is {least:g} mm"
+            )
+            return (Finding("min-radius", message, True, {"v": i}),)
+        for u in (0.0, 1.0):
+            sharpest, v = maximum(partial(_bend, piece.patch, u))
+            if sharpest > 1.0 / least:
+                message = f"the strip bends to a radius of {1.0 / sharpest:.4g} mm, min_radius is {least:g} mm"
+                return (Finding("min-radius", message, True, {"v": i + v, "u": u}),)
+    return ()
+
+
+def _bend(patch: RuledPatch, u: float, v: Values) -> Values:
+    bend: Values = np.abs(curvature(patch, v, u))
+    return bend

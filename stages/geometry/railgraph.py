@@ -1,0 +1,257 @@
+"""The shortest way of a ruling along two rails: over arcs of F = 0 and cones, with folds where nothing else leads on.
+
+A strip between rails r(t) and c(s) is a path on which neither parameter falls, from the first ruling to the last.
+Three moves make developables: ALONG an arc of F = 0 (a ruled piece), ON_A (t moves, s stays: a cone with its apex on b,
+a plane triangle over a straight piece) and ON_B.  Two moves meet smoothly where F = 0 and the zero is open; elsewhere
+they meet in a fold of exactly the warp of that ruling.  Zeros on the lattice are nodes of a graph with one state per
+move; the moves between them are its edges, and a corner of the lattice beside an open zero stands for the exact corner
+that `railpath` puts in its place.  Dijkstra's algorithm [1]_ finds the cheapest path: fewest folds, then least angle of
+folds, then least turning of cones.
+
+Junctions are lattice places: a path that needs a corner between two lines is found beside it.
+
+.. [1] E. W. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1 (1959), 269-271.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from stages.geometry.arrays import Indices, Values
+from stages.geometry.railzero import Field, Lines, Place, Zeros, chords
+
+Move = Literal["along", "on_a", "on_b"]
+State = tuple[Place, Move]
+"""A place of the lattice (a zero, or ("corner", i, j)) and the move one is in there."""
+
+FOLD = 1e3
+"""What a fold costs beside its angle in degrees: more than all other costs together, so that fewest folds win."""
+CONE = 1e-3
+"""What a degree of turning of a cone costs: ruled pieces are preferred, as cones bend sharply at their apex."""
+START = 1e-2
+"""What each further piece costs: ten degrees of a cone."""
+STEP = 1e-9
+"""What any edge costs: an explicit zero would be no edge."""
+SMOOTH = 1e-9
+"""A warp below this, rad, is none: rounding of cross products."""
+BESIDE = np.radians(45.0)
+"""A lattice corner beside an open zero stands for the exact corner only if its own warp is below this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """What a strip may do: fold by at most `fold_rad`.
+
+    beside: whether lattice corners beside an open zero stand for an exact one, which may turn out not to be there.
+    """
+
+    fold_rad: float = 0.0
+    beside: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """A place on the way, the move that one is in there, and whether the place is a corner that folds."""
+
+    move: Move
+    t: float
+    s: float
+    fold: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """Where a ruling stops on its way, and what the way costs; no stops and an infinite cost if there is none."""
+
+    stops: tuple[Stop, ...]
+    cost: float
+
+
+@dataclass(slots=True)
+class _Graph:
+    """Edges in the making, by the numbers of their states."""
+
+    number: dict[State, int] = field(default_factory=dict)
+    edges: list[tuple[int, int, float]] = field(default_factory=list)
+
+    def add(self, start: State, end: State, cost: float) -> None:
+        """Add an edge unless its cost is infinite."""
+        if cost < np.inf:
+            ends = [self.number.setdefault(state, len(self.number)) for state in (start, end)]
+            self.edges.append((ends[0], ends[1], cost + STEP))
+
+
+def way(found: Field, every: Zeros, rules: Rules) -> Way:
+    """Return the cheapest way from the first ruling to the last that keeps the rules."""
+    graph = _Graph()
+    for start, end in (*chords(found, every), *_over_breaks(found, every)):
+        graph.add((start, "along"), (end, "along"), STEP)
+    corners = _corners(found, every, rules)
+    for place, cost in corners.items():
+        graph.add((place, "on_a"), (place, "on_b"), cost)
+        graph.add((place, "on_b"), (place, "on_a"), cost)
+    used = [place for place in every if every[place].open]
+    for place in used:
+        move: Move = "on_b" if place[0] == "column" else "on_a"
+        graph.add((place, "along"), (place, move), START)
+        graph.add((place, move), (place, "along"), START)
+    at = {place: where(found, every, place) for place in (*used, *corners)}
+    _add_cones(graph, found, at, "on_a", rules)
+    _add_cones(graph, found, at, "on_b", rules)
+    path, cost = _shortest(graph, found.F.shape)
+    folded = {place for place, price in corners.items() if price >= FOLD}
+    return Way(tuple(Stop(move, *where(found, every, place), place in folded) for place, move in path), cost)
+
+
+def _over_breaks(found: Field, every: Zeros) -> list[tuple[Place, Place]]:
+    """Return the zeros on the two lines of a break at which an arc goes on: a break without a kink."""
+    pairs = []
+    for place, zero in every.items():
+        kind, i, j = place
+        after: Place = (kind, i + 1, j) if kind == "column" else (kind, i, j + 1)
+        inside = found.a.inside if kind == "column" else found.b.inside
+        line = i if kind == "column" else j
+        if line < inside.size and not inside[line] and after in every and zero.open and every[after].open:
+            apart = abs(every[after].t - zero.t) + abs(every[after].s - zero.s)
+            pairs += [(place, after)] if apart <= ONE_PLACE else []
+    return pairs
+
+
+ONE_PLACE = 1e-9
+"""Zeros on both sides of a break are one if they are this close: tangents equal to rounding, over a flat crossing."""
+
+
+def _corners(found: Field, every: Zeros, rules: Rules) -> dict[Place, float]:
+    """Return the lattice corners at which a path may turn from one cone to another, with their costs."""
+    n, m = found.F.shape
+    zero = {(int(i), int(j)) for i, j in np.argwhere((found.F == 0.0) & (found.warp <= SMOOTH))}
+    costs = dict.fromkeys(zero if len(zero) <= MANY * (n + m) else zero.intersection(_coarse(found)), START)
+    for corner in _beside(found, every) if rules.beside else ():
+        costs.setdefault(corner, START + CONE * float(np.degrees(found.warp[corner])))
+    if rules.fold_rad > 0.0:
+        for corner in _coarse(found):
+            if found.warp[corner] <= rules.fold_rad:
+                costs.setdefault(corner, FOLD + float(np.degrees(found.warp[corner])))
+    costs |= {(0, 0): 0.0, (n - 1, m - 1): 0.0}
+    return {("corner", i, j): cost for (i, j), cost in costs.items()}
+
+
+MANY = 4
+"""Zeros on more than so many lines' worth of corners are a plane or one cone: coarse corners do."""
+
+
+def _beside(found: Field, every: Zeros) -> set[tuple[int, int]]:
+    """Return the corners at both ends of the lattice edges that open zeros lie on."""
+    sides = {"column": (0, 1), "row": (1, 0)}
+    both = {
+        (i + shift * sides[kind][0], j + shift * sides[kind][1])
+        for (kind, i, j), zero in every.items()
+        if zero.open
+        for shift in (0, 1)
+    }
+    return {corner for corner in both if found.warp[corner] < BESIDE}
+
+
+def _coarse(found: Field) -> Iterable[tuple[int, int]]:
+    """Return every fourth corner each way, and those at breaks and ends."""
+    return [(i, j) for i in _coarse_lines(found.a) for j in _coarse_lines(found.b)]
+
+
+def _coarse_lines(of: Lines) -> list[int]:
+    breaks = np.nonzero(~of.inside)[0]
+    last = of.value.size - 1
+    return sorted({*range(0, last, COARSE), last, *breaks.tolist(), *(breaks + 1).tolist()})
+
+
+COARSE = 4
+"""Folds may lie on every fourth line: their exact place is found later."""
+
+
+def _add_cones(graph: _Graph, found: Field, at: Mapping[Place, tuple[float, float]], move: Move, rules: Rules) -> None:
+    """Add the cones between places that follow each other at one parameter of the fixed rail; a break has one."""
+    turning_on_b = move == "on_b"
+    fixed, moving = (found.a, found.b) if turning_on_b else (found.b, found.a)
+    turns = found.turn_b if turning_on_b else found.turn_a.T
+    lanes: dict[float, list[tuple[float, int, int, Place]]] = {}
+    for place, (t, s) in at.items():
+        kind, i, j = place
+        if kind in ("column" if turning_on_b else "row", "corner"):
+            rests, x, line, below = (t, s, i, j) if turning_on_b else (s, t, j, i)
+            lanes.setdefault(round(rests, DIGITS), []).append((round(x, DIGITS), line, below, place))
+    line_at = {round(float(value), DIGITS): k for k, value in enumerate(fixed.value)}
+    for rests, lane in lanes.items():
+        _add_lane(graph, sorted(lane), _Costs.of(turns[line_at[rests]], moving, rules), move)
+
+
+DIGITS = 12
+"""Decimals to which parameters are told apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Costs:
+    """Costs of a cone up to each line, and in how many intervals it has done what the rules forbid."""
+
+    value: Values
+    cost: Values
+    barred: Indices
+
+    @classmethod
+    def of(cls, turn: Values, moving: Lines, rules: Rules) -> "_Costs":
+        fold = ~moving.inside & (turn > SMOOTH)
+        cone = np.where(moving.inside, CONE * np.degrees(turn), 0.0)
+        step = np.where(fold, FOLD + np.degrees(turn), cone)
+        barred = fold & (turn > rules.fold_rad)
+        return cls(moving.value, np.append(0.0, np.cumsum(step)), np.append(0, np.cumsum(barred)))
+
+    def up_to(self, x: float, line: int) -> float:
+        """Return the cost up to x, on the line or in the interval above it."""
+        above = min(line + 1, self.value.size - 1)
+        width = self.value[above] - self.value[line]
+        share = (x - self.value[line]) / width if width > 0.0 else 0.0
+        return float(self.cost[line] + share * (self.cost[above] - self.cost[line]))
+
+
+def _add_lane(graph: _Graph, lane: Sequence[tuple[float, int, int, Place]], costs: _Costs, move: Move) -> None:
+    """Add the cones along one lane, each from a place to the next, but not over what the rules forbid."""
+    before: tuple[Place, float, int] | None = None
+    for x, _, below, place in lane:
+        here, barred = costs.up_to(x, below), int(costs.barred[below])
+        if before is not None and barred == before[2]:
+            graph.add((before[0], move), (place, move), max(here - before[1], 0.0))
+        before = place, here, barred
+
+
+def where(found: Field, every: Zeros, place: Place) -> tuple[float, float]:
+    """Return the parameters t and s of a place."""
+    if place[0] == "corner":
+        return float(found.a.value[place[1]]), float(found.b.value[place[2]])
+    return every[place].t, every[place].s
+
+
+def _shortest(graph: _Graph, shape: tuple[int, ...]) -> tuple[list[State], float]:
+    """Return the states of the cheapest path and its cost; none if no path leads to the end."""
+    n, m = shape
+    states = list(graph.number)
+    starts, ends = (
+        [graph.number[state] for state in ((corner, "on_a"), (corner, "on_b")) if state in graph.number]
+        for corner in (("corner", 0, 0), ("corner", n - 1, m - 1))
+    )
+    if not (starts and ends):
+        return [], np.inf
+    tails, heads, costs = (np.array(column) for column in zip(*graph.edges, strict=True))
+    order = np.lexsort((costs, heads, tails))
+    first = np.append(True, (np.diff(tails[order]) != 0) | (np.diff(heads[order]) != 0))
+    kept = order[first]
+    matrix = coo_matrix((costs[kept], (tails[kept], heads[kept])), shape=(len(states), len(states))).tocsr()
+    cost, before, _ = dijkstra(matrix, indices=starts, return_predecessors=True, min_only=True)
+    last = min(ends, key=lambda state: float(cost[state]))
+    if not np.isfinite(cost[last]):
+        return [], np.inf
+    path = [last]
+    while before[path[-1]] >= 0:
+        path.append(int(before[path[-1]]))
+    return [states[k] for k in path[::-1]], float(cost[last])

@@ -1,0 +1,228 @@
+"""Where a ruling between two rails has one tangent plane at both ends: the zero set of F over pairs of parameters.
+
+F(t, s) = det(r', c - r, c') for rails r(t) and c(s), each a chain of smooth pieces.  F is sampled where lattice lines
+cross; between two crossings of unlike sign a zero is found to rounding.  A zero counts if both end normals look the
+same way, (p x r') . (p x c') > 0: else the edge of regression lies between the rails.  Inside a cell of the lattice
+zeros on its sides are joined by chords; a chord is kept if both parameters rise along it, which is where the arc is a
+ruled developable.  At a kink a rail has two lattice lines, one for the tangent on either side.
+
+Two arcs, or both ends of a loop, that enter and leave one side of a cell are not seen: the lattice is the resolution.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stages.geometry.arrays import Array, ArrayValue, Indices, Points3, Values, dot, norm
+from stages.geometry.curves import Curve
+from stages.geometry.roots import bracketed
+
+Flags = NDArray[np.bool_]
+
+NOISE = 1e-13
+"""F below this share of |r'||c - r||c'| is rounding of a zero: three products of doubles, summed over six terms."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lines(ArrayValue):
+    """Lattice lines across one rail, both ends of each smooth piece among them: a break has two.
+
+    value: parameter, the number of the piece plus the place in it.  point, slope: there, shape (n, 3).
+    """
+
+    pieces: tuple[Curve, ...]
+    value: Values
+    point: Points3
+    slope: Points3
+
+    @property
+    def piece(self) -> Indices:
+        """The piece that each line lies on; all have the same number of lines."""
+        return np.repeat(np.arange(len(self.pieces)), self.value.size // len(self.pieces))
+
+    @property
+    def inside(self) -> Flags:
+        """Whether the interval from each line to the next lies inside one piece, shape (n - 1,)."""
+        same: Flags = self.piece[1:] == self.piece[:-1]
+        return same
+
+    def local(self, lines: Indices) -> Values:
+        """Return the place of lines in their pieces."""
+        place: Values = self.value[lines] - self.piece[lines]
+        return place
+
+
+def lines(pieces: Sequence[Curve], count: int) -> Lines:
+    """Return about `count` lines, at least `LEAST` intervals to a piece."""
+    each = max(LEAST, -(-count // len(pieces)))
+    local = np.linspace(0.0, 1.0, each + 1)
+    jets = [curve.jet(local, 1) for curve in pieces]
+    return Lines(
+        tuple(pieces),
+        np.repeat(np.arange(len(pieces)), each + 1) + np.tile(local, len(pieces)),
+        np.concatenate([jet[0] for jet in jets]),
+        np.concatenate([jet[1] for jet in jets]),
+    )
+
+
+LEAST = 8
+"""Intervals that even a short piece of many has: a cubic's tangents turn by three inflections at most."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Field(ArrayValue):
+    """Two rails on their lattice: F in mm3 (noise set to 0) and the warp of the ruling in rad, shape (n, m).
+
+    turn_a: by how much the normal turns from line to line of rail a about a fixed end on b, rad, (n - 1, m); turn_b:
+    the other way round, (n, m - 1).  Between the two lines of a break that is the angle of a fold.
+    """
+
+    a: Lines
+    b: Lines
+    F: Array
+    warp: Array
+    turn_a: Array
+    turn_b: Array
+
+
+def field(rail_a: Sequence[Curve], rail_b: Sequence[Curve], count: int) -> Field:
+    """Return the lattice of about `count` lines on each rail."""
+    a, b = lines(rail_a, count), lines(rail_b, count)
+    p = b.point[None] - a.point[:, None]
+    normal_a, normal_b = np.cross(p, a.slope[:, None]), np.cross(p, b.slope[None])
+    F = -dot(normal_a, np.broadcast_to(b.slope[None], p.shape))
+    length = norm(p)
+    F = np.where(np.abs(F) <= NOISE * length * norm(a.slope)[:, None] * norm(b.slope)[None], 0.0, F)
+    warp = np.arctan2(length * np.abs(F), dot(normal_a, normal_b))
+    return Field(a, b, F, warp, angles(normal_a[:-1], normal_a[1:]), angles(normal_b[:, :-1], normal_b[:, 1:]))
+
+
+def angles(x: Array, y: Array) -> Array:
+    """Return the angles between vectors along the last axis, rad; 0 where one has no length."""
+    found: Array = np.arctan2(norm(np.cross(x, y)), dot(x, y))
+    return found
+
+
+Place = tuple[str, int, int]
+"""A zero on the lattice: ("column", i, j) on line i of rail a between the lines j and j + 1 of b, ("row", i, j) on line
+j of rail b between the lines i and i + 1 of a."""
+
+
+@dataclass(frozen=True, slots=True)
+class Zero:
+    """A ruling with one tangent plane at both ends; `open` if both normals look the same way."""
+
+    t: float
+    s: float
+    open: bool
+
+
+Zeros = Mapping[Place, Zero]
+
+
+def zeros(found: Field) -> Zeros:
+    """Return every zero of F on a lattice line, to rounding."""
+    a, b = found.a, found.b
+    below = found.F >= 0.0
+    i, j = np.nonzero((below[:, :-1] != below[:, 1:]) & b.inside[None])
+    s, column_open = _crossings(a, b, i, j)
+    columns = zip(i.tolist(), j.tolist(), s.tolist(), column_open.tolist(), strict=True)
+    k, m = np.nonzero((below[:-1] != below[1:]) & a.inside[:, None])
+    t, row_open = _crossings(b, a, m, k)
+    rows = zip(k.tolist(), m.tolist(), t.tolist(), row_open.tolist(), strict=True)
+    on_columns = {("column", i, j): Zero(float(a.value[i]), s, is_open) for i, j, s, is_open in columns}
+    return on_columns | {("row", k, m): Zero(t, float(b.value[m]), is_open) for k, m, t, is_open in rows}
+
+
+def _crossings(fixed: Lines, other: Lines, at: Indices, below: Indices) -> tuple[Values, Flags]:
+    """Return, for lines `at` of one rail, the zero between the lines `below` and the next of the other, and if open.
+
+    F does not change when the rails are exchanged.
+    """
+    values, is_open = np.zeros(at.size), np.zeros(at.size, dtype=bool)
+    for number, curve in enumerate(other.pieces):
+        chosen = np.nonzero(other.piece[below] == number)[0]
+        x, d, k = fixed.point[at[chosen]], fixed.slope[at[chosen]], below[chosen]
+        local = bracketed(partial(_mismatch_at, curve, x, d), other.local(k), other.local(k + 1))
+        found = curve.jet(local, 1)
+        arm = found[0] - x
+        values[chosen] = number + local
+        is_open[chosen] = dot(np.cross(arm, d), np.cross(arm, found[1])) > 0.0
+    return values, is_open
+
+
+def _mismatch_at(curve: Curve, x: Array, d: Array, v: Values, which: Indices) -> Values:
+    """Return F between a curve at v and some of the points x with slopes d."""
+    return _mismatch(curve, x[which], d[which], v)
+
+
+def _mismatch(curve: Curve, x: Points3, d: Points3, v: Values) -> Values:
+    """Return F between a curve at v and points x with slopes d, mm3."""
+    found = curve.jet(v, 1)
+    triple: Values = dot(np.cross(d, found[0] - x), found[1])
+    return triple
+
+
+Chord = tuple[Place, Place]
+"""Two zeros in one cell, in the order in which both parameters rise."""
+
+
+def chords(found: Field, every: Zeros) -> list[Chord]:
+    """Return the chords of the arcs along which both parameters rise and both zeros are open."""
+    pairs = (pair for cell in _cells(found, every) for pair in _joined(found, every, cell))
+    rising = (_rising(every, pair) for pair in pairs)
+    return [pair for pair in rising if pair is not None]
+
+
+Cell = tuple[int, int]
+
+
+def _cells(found: Field, every: Zeros) -> list[Cell]:
+    """Return the cells with a zero on a side, by their lowest lines."""
+    n, m = found.F.shape
+    beside = {
+        (i - back, j) if kind == "column" else (i, j - back) for kind, i, j in every for back in (0, 1)
+    }  # fmt: skip
+    inside_a, inside_b = found.a.inside, found.b.inside
+    return sorted((i, j) for i, j in beside if 0 <= i < n - 1 and 0 <= j < m - 1 and inside_a[i] and inside_b[j])
+
+
+def _joined(found: Field, every: Zeros, cell: Cell) -> list[Chord]:
+    """Return which zeros on the sides of a cell belong to one arc; of four, the sign in the middle decides."""
+    i, j = cell
+    left, right, low, high = ("column", i, j), ("column", i + 1, j), ("row", i, j), ("row", i, j + 1)
+    there = [side for side in (left, low, right, high) if side in every]
+    if len(there) == len("ab"):
+        return [(there[0], there[1])]
+    if len(there) < len("abcd"):
+        return []
+    if (_middle(found, cell) >= 0.0) == (found.F[i, j] >= 0.0):
+        return [(left, high), (low, right)]
+    return [(left, low), (right, high)]
+
+
+def _middle(found: Field, cell: Cell) -> float:
+    """Return F in the middle of a cell."""
+    i, j = cell
+    a, b = found.a, found.b
+    t, s = (float(line.value[k : k + 2].mean() - line.piece[k]) for line, k in ((a, i), (b, j)))
+    r = a.pieces[a.piece[i]].jet(np.array([t]), 1)
+    return float(_mismatch(b.pieces[b.piece[j]], r[0], r[1], np.array([s]))[0])
+
+
+def _rising(every: Zeros, chord: Chord) -> Chord | None:
+    """Return the chord in rising order, or None."""
+    first, second = (every[place] for place in chord)
+    if not (first.open and second.open):
+        return None
+    t, s = second.t - first.t, second.s - first.s
+    if min(t, s) >= -SAME and max(t, s) > 0.0:
+        return chord
+    return (chord[1], chord[0]) if max(t, s) <= SAME else None
+
+
+SAME = 1e-13
+"""Parameters closer than this are one: zeros are found to rounding, and a level arc must not seem to fall."""
