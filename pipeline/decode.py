@@ -274,10 +274,8 @@ def _has_shape(sort: inspect.Type, raw: object) -> bool:
             return isinstance(raw, Mapping)
         case inspect.VarTupleType() | inspect.TupleType():
             return isinstance(raw, list | tuple)
-        case inspect.StrType():
-            return isinstance(raw, str)
-        case inspect.BoolType():
-            return isinstance(raw, bool)
+        case inspect.StrType() | inspect.BoolType():
+            return isinstance(raw, str if isinstance(sort, inspect.StrType) else bool)
         case inspect.IntType():
             return isinstance(raw, int) and not isinstance(raw, bool)
         case inspect.LiteralType():

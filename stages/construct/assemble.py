@@ -71,8 +71,7 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances) -> Built:
             patches, measured, refusals = slope(spec, link, tol)
             return Built(patches, measured, (*_open("curve", link, tol), *refusals))
         case Rails():
-            patches, findings, detail = rail_strip(spec, tol)
-            return Built(patches, findings=findings, detail=detail)
+            return rail_strip(spec, tol)
         case Transition():
             patches, findings = transition(spec)
             return Built(patches, findings=findings)
@@ -81,15 +80,18 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances) -> Built:
             return Built(patches, findings=findings)
         case Strap():
             link = chain(spec.centre)
-            built = strap(spec, link, tol)
-            return replace(built, findings=(*_open("centre", link, tol), *built.findings))
+            return _joined("centre", link, strap(spec, link, tol), tol)
         case Ribbon():
             link = chain(spec.curve)
-            built = ribbon(spec, link, tol)
-            return replace(built, findings=(*_open("curve", link, tol), *built.findings))
+            return _joined("curve", link, ribbon(spec, link, tol), tol)
         case Strip():
             return strip_of([patches_of(piece, tol) for piece in spec.pieces], tol)
     raise ValueError(f"no construction for {type(spec).__name__}")
+
+
+def _joined(key: str, link: Chain, built: Built, tol: Tolerances) -> Built:
+    """Return what was built over a chain, with the finding that the chain is open if it is."""
+    return replace(built, findings=(*_open(key, link, tol), *built.findings))
 
 
 def _open(key: str, link: Chain, tol: Tolerances) -> tuple[Finding, ...]:

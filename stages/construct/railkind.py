@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, ends
 from stages.construct.rails import Piece, pieces, rows
 from stages.geometry.arrays import Values, norm
@@ -26,20 +27,20 @@ STILL_SMOOTH_DEG = 1e-6
 """A fold of less is none: what exact corners leave to rounding is 1e-12."""
 
 
-def rail_strip(spec: Rails, tol: Tolerances) -> tuple[tuple[RuledPatch, ...], tuple[Finding, ...], dict[str, object]]:
-    """Return the patches of the strip, what was found, and its pieces; no patches if there is no strip."""
+def rail_strip(spec: Rails, tol: Tolerances) -> Built:
+    """Return the strip with its pieces and what was found; no patches if there is no strip."""
     a, b = chain(spec.rail_a), chain(spec.rail_b)
     closed = [_is_closed(rail, tol) for rail in (a, b)]
     if closed[0] != closed[1]:
-        return (), (Finding("open-and-closed", "one rail is open and the other is closed", True),), {}
+        return Built((), findings=(Finding("open-and-closed", "one rail is open and the other is closed", True),))
     fold = ANY_FOLD if spec.folds == "allow" else float(np.radians(float(spec.max_warp)))
     found = best_strip(a.curves, b.curves, Rules(fold), closed=closed[0])
     if found is None:
-        return (), (_refusal(a.curves, b.curves, closed=closed[0]),), {}
+        return Built((), findings=(_refusal(a.curves, b.curves, closed=closed[0]),))
     made = pieces(found)
     patches = tuple(piece.patch for piece in made)
     findings = (*_folds(patches), *_apexes(made), *_too_sharp(made, spec))
-    return patches, findings, {"pieces": rows(found, made)}
+    return Built(patches, findings=findings, detail={"pieces": rows(found, made)})
 
 
 def best_strip(rail_a: Rail, rail_b: Rail, rules: Rules, *, closed: bool) -> Strip | None:

@@ -12,9 +12,8 @@ import numpy as np
 
 from stages.geometry.arrays import Array
 from stages.geometry.curves import Bezier, Curve, Difference, affine, blossom, exactly, restrict
-from stages.geometry.linked import Linked
 from stages.geometry.planarity import is_planar
-from stages.geometry.railpath import TINY, Leg
+from stages.geometry.railpath import TINY, Leg, linked
 from stages.geometry.railstrip import Rail, Strip, as_given
 from stages.geometry.ruled import RuledPatch
 
@@ -67,18 +66,9 @@ def _sort(patch: RuledPatch) -> str:
     return "triangle" if is_planar((patch,))[0] else "cone"
 
 
-MIDDLE = 0.5
-
-
 def _ruled(knots: Array, rail_a: Rail, rail_b: Rail) -> Piece:
     """Return the ruled piece over knots that lie in one piece of each rail."""
-    i, j = (int(np.floor(knots[:, axis].mean())) for axis in (0, 1))
-    if (np.abs(knots - np.array([i, j]) - MIDDLE) > MIDDLE + TINY).any():
-        raise ValueError("an arc must lie in one piece of each rail")
-    t, s = np.clip(knots[:, 0] - i, 0.0, 1.0), np.clip(knots[:, 1] - j, 0.0, 1.0)
-    w = t + s
-    kept = np.append(True, np.diff(w) > TINY)
-    c0, c1 = (Linked(rail_a[i], rail_b[j], w[kept], t[kept], on_b) for on_b in (False, True))
+    c0, c1 = (linked(knots, rail_a, rail_b, on_b=on_b) for on_b in (False, True))
     (t0, s0), (t1, s1) = knots[0], knots[-1]
     return Piece("ruled", RuledPatch(c0, c1, Difference(c1, c0)), (float(t0), float(t1)), (float(s0), float(s1)))
 

@@ -9,13 +9,13 @@ Not for arcs with a point at which F_t = F_s = 0 (two arcs cross there): divide 
 """
 
 from dataclasses import dataclass
-from math import factorial
 
 import numpy as np
 
 from stages.geometry.arrays import EPS, Array, ArrayValue, Points3, Values
 from stages.geometry.curves import Curve
 from stages.geometry.roots import bracketed
+from stages.geometry.series import derivatives, inner, outer, product, taylor
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,9 +44,8 @@ class Linked(ArrayValue):
         w = self.w[0] + v * span
         t = arc(self, w, order)
         rail, x = (self.b, complement(w, t)) if self.on_b else (self.a, t)
-        scales = np.array([factorial(k) * span**k for k in range(order + 1)])
-        derivatives: Array = composed(rail.jet(x[0], order), x) * scales[:, None, None]
-        return derivatives
+        scales = span ** np.arange(order + 1.0)
+        return derivatives(composed(rail.jet(x[0], order), x) * scales[:, None, None])
 
 
 def complement(w: Values, t: Array) -> Array:
@@ -74,33 +73,22 @@ def _mismatch(link: Linked, w: Values, t: Array) -> Values:
     r, c = link.a.jet(t[0], count), link.b.jet(s[0], count)
     along_r, along_c = composed(r[1:], t), composed(c[1:], s)
     arm = composed(c[:count], s) - composed(r[:count], t)
-    total = np.zeros(w.size)
-    for i in range(count):
-        for j in range(count - i):
-            total += _triple(along_r[i], arm[j], along_c[count - 1 - i - j])
-    return total
+    found: Values = inner(outer(along_r, arm), along_c)[-1]
+    return found
 
 
-def composed(derivatives: Array, x: Array) -> Array:
+def composed(jet: Array, x: Array) -> Array:
     """Return the Taylor coefficients of f(x(w)), shape (m, n, 3), from f's derivatives at x[0] and x's own, (m, n)."""
     count = x.shape[0]
     step = x.copy()
     step[0] = 0.0
     power = np.zeros_like(x)
     power[0] = 1.0
-    total = np.zeros((count, *derivatives.shape[1:]))
-    for k in range(count):
-        total += power[:, :, None] * derivatives[k] / factorial(k)
-        power = _product(power, step)
+    total = np.zeros((count, *jet.shape[1:]))
+    for term in taylor(jet[:count]):
+        total += power[:, :, None] * term
+        power = product(power, step)
     return total
-
-
-def _product(a: Array, b: Array) -> Array:
-    """Return the product of two truncated power series, each (m, n)."""
-    product = np.zeros_like(a)
-    for i in range(a.shape[0]):
-        product[i:] += a[i] * b[: a.shape[0] - i]
-    return product
 
 
 def _triple(a: Points3, b: Points3, c: Points3) -> Values:

@@ -7,7 +7,7 @@ m = p x (c0' + p'/2), which is half the sum of both end normals: an apex leaves 
 Where m vanishes (a ruling of no length, a ruling along the directrix, a directrix that stops), N is its limit: of
 polynomial and rational patches m is a polynomial, whose components' common factor is divided out exactly; parallel
 rulings keep their direction apart from their length.  Any other patch whose normal vanishes at an end is refused.
-Derivatives of N = m / |m| to any order by the power series of |m|^2 and of its inverse square root.
+Derivatives of N = m / |m| to any order by power series (`series`).
 
 Of a patch with warp this is the offset along the normals at the middles of its rulings.
 
@@ -16,13 +16,13 @@ Of a patch with warp this is the offset along the normals at the middles of its 
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb, factorial
+from math import comb
 
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry import bernstein
-from stages.geometry.arrays import Array, ArrayValue, Points3, Values, dot, norm
+from stages.geometry import bernstein, series
+from stages.geometry.arrays import Array, ArrayValue, Points3, Values, norm
 from stages.geometry.basis import bernstein_jet
 from stages.geometry.bernstein import Polynomial, Vector
 from stages.geometry.curves import Along, Bezier, Curve, RationalBezier, homogeneous
@@ -50,15 +50,10 @@ class Normal(ArrayValue):
     along: Curve
 
     def jet(self, v: Values, order: int) -> Array:
-        """Return value and derivatives up to `order`, shape (order + 1, n, 3), by Leibniz's rule."""
+        """Return value and derivatives up to `order`, shape (order + 1, n, 3)."""
         slopes = (self.c0.jet(v, order + 1) + 0.5 * self.p.jet(v, order + 1))[1:]
         along = self.along.jet(v, order)
-        return np.stack(
-            [
-                np.sum([comb(k, i) * np.cross(along[i], slopes[k - i]) for i in range(k + 1)], axis=0)
-                for k in range(order + 1)
-            ]
-        )
+        return series.derivatives(series.outer(series.taylor(along), series.taylor(slopes)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,10 +64,7 @@ class Unit(ArrayValue):
 
     def jet(self, v: Values, order: int) -> Array:
         """Return value and derivatives up to `order`, shape (order + 1, n, 3)."""
-        scale = np.array([factorial(k) for k in range(order + 1)], dtype=np.float64)[:, None, None]
-        series = self.vector.jet(v, order) / scale
-        made: Array = scale * _product(_inverse_root(_squares(series))[..., None], series)
-        return made
+        return series.derivatives(series.unit(series.taylor(self.vector.jet(v, order))))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -203,28 +195,3 @@ def _rounded(vector: Vector) -> Points3:
     exact = [[Fraction(f.scaled[i], f.denominator * comb(degree, i)) for f in rows] for i in range(degree + 1)]
     largest = max(abs(x) for point in exact for x in point)
     return np.array([[float(x / largest) for x in point] for point in exact])
-
-
-def _squares(series: Array) -> Array:
-    """Return the power series of |f|^2 from that of f, shape (k, n)."""
-    count = series.shape[0]
-    return np.stack([np.sum([dot(series[i], series[k - i]) for i in range(k + 1)], axis=0) for k in range(count)])
-
-
-def _inverse_root(squares: Array) -> Array:
-    """Return the power series of s^(-1/2), shape (k, n); zero where s is zero.
-
-    From  s r' = -(1/2) s' r  term by term (Knuth, "The Art of Computer Programming", vol. 2, 4.7).
-    """
-    nonzero = squares[0] > 0.0
-    inverse = np.divide(1.0, squares[0], out=np.zeros_like(squares[0]), where=nonzero)
-    roots = [np.sqrt(inverse)]
-    for k in range(1, squares.shape[0]):
-        terms = [(j / 2.0 - k) * squares[j] * roots[k - j] for j in range(1, k + 1)]
-        roots.append(np.sum(terms, axis=0) * inverse / k)
-    return np.stack(roots)
-
-
-def _product(a: Array, b: Array) -> Array:
-    """Return the power series of a product, along the first axis."""
-    return np.stack([np.sum([a[i] * b[k - i] for i in range(k + 1)], axis=0) for k in range(b.shape[0])])

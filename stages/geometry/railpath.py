@@ -15,6 +15,7 @@ import numpy as np
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, ArrayValue, Values, norm
 from stages.geometry.curves import Curve
+from stages.geometry.linked import Linked, arc, mismatch
 from stages.geometry.railgraph import ONE_PLACE, Move, Stop
 
 Rail = Sequence[Curve]
@@ -85,11 +86,45 @@ def solved(parts: Sequence[Leg], rail_a: Rail, rail_b: Rail) -> tuple[Leg, ...]:
         corners = _corners(parts, rail_a, rail_b)
         rises = np.diff(corners, axis=0).min(axis=1)
         if (rises >= -TINY).all():
-            return _merged(_legs_between(parts, corners))
+            made = _merged(_legs_between(parts, corners))
+            _refuse_gaps(made, rail_a, rail_b)
+            return made
         backwards = [k for k in range(len(parts)) if rises[k] < -TINY]
         shortest = min(backwards, key=lambda k: parts[k].length)
         parts = _without(parts, shortest)
     raise NoSolutionError("corners of the strip", reached=float(-rises.min()), wanted=TINY, unit="of a piece backwards")
+
+
+def _refuse_gaps(parts: Sequence[Leg], rail_a: Rail, rail_b: Rail) -> None:
+    """Raise NoSolutionError where two knots do not lie on one arc: a corner has come to another branch of F = 0."""
+    for leg in parts:
+        if leg.move == "along" and not _level(leg.knots[0], leg.knots[-1]):
+            link = linked(leg.knots, rail_a, rail_b, on_b=False)
+            w = (link.w[:-1] + link.w[1:]) / 2.0
+            t = arc(link, w, 0)[0]
+            r, c = link.a.jet(t, 1), link.b.jet(w - t, 1)
+            size = norm(r[1]) * norm(c[0] - r[0]) * norm(c[1])
+            off = float((np.abs(mismatch(link.a, link.b, t, w - t)) / size).max())
+            if off > ON_ARC:
+                raise NoSolutionError("an arc between two corners", reached=off, wanted=ON_ARC, unit="of |r'||p||c'|")
+
+
+ON_ARC = 1e-9
+"""A thousand roundings of F; off every arc F is the sine of a warp that is seen."""
+
+
+def linked(knots: Array, rail_a: Rail, rail_b: Rail, *, on_b: bool) -> Linked:
+    """Return one of the rails along an arc by its knots, which lie in one piece of each rail."""
+    i, j = (int(np.floor(knots[:, axis].mean())) for axis in (0, 1))
+    if (np.abs(knots - np.array([i, j]) - MIDDLE) > MIDDLE + TINY).any():
+        raise ValueError("an arc must lie in one piece of each rail")
+    t, s = np.clip(knots[:, 0] - i, 0.0, 1.0), np.clip(knots[:, 1] - j, 0.0, 1.0)
+    w = t + s
+    kept = np.append(True, np.diff(w) > TINY)
+    return Linked(rail_a[i], rail_b[j], w[kept], t[kept], on_b)
+
+
+MIDDLE = 0.5
 
 
 def _without(parts: tuple[Leg, ...], k: int) -> tuple[Leg, ...]:

@@ -18,6 +18,7 @@ from stages.geometry.railbound import Bound, least_fold
 from stages.geometry.railgraph import Rules, way
 from stages.geometry.railpath import TINY, Leg, legs, solved
 from stages.geometry.railzero import Field, Zeros, field, zeros
+from stages.geometry.roots import chord_zeros
 
 Rail = tuple[Curve, ...]
 LINES = 192
@@ -45,16 +46,19 @@ class Strip:
 
 
 def open_strip(rail_a: Rail, rail_b: Rail, rules: Rules, count: int = LINES) -> Strip | None:
-    """Return the best strip between the rails as they run; None if there is none."""
-    found = field(rail_a, rail_b, count)
-    every = zeros(found)
-    for beside in (True, False):
-        best = way(found, every, replace(rules, beside=beside))
-        if best.stops:
-            try:
-                return Strip(solved(legs(best.stops), rail_a, rail_b), rail_a, rail_b)
-            except NoSolutionError:
-                continue  # a corner that seemed to be there is not: once more without such
+    """Return the best strip between the rails as they run; None if there is none.
+
+    Corners that the lattice promised and that are not there are looked for on twice as many lines, then done without.
+    """
+    for lines, beside in ((count, True), (2 * count, True), (count, False)):
+        found = field(rail_a, rail_b, lines)
+        best = way(found, zeros(found), replace(rules, beside=beside))
+        if not best.stops:
+            return None
+        try:
+            return Strip(solved(legs(best.stops), rail_a, rail_b), rail_a, rail_b)
+        except NoSolutionError:
+            continue
     return None
 
 
@@ -109,7 +113,7 @@ def _priced(rail_a: Rail, rail_b: Rail, rules: Rules) -> list[tuple[float, tuple
     priced = []
     for t, s in islice(_seams(found, every, rules), MOST_SEAMS):
         tried = field(turned(rail_a, t), turned(rail_b, s), SEAM_LINES)
-        priced.append((way(tried, zeros(tried), rules).cost, (t, s)))
+        priced.append((way(tried, zeros(tried, chord_zeros), rules).cost, (t, s)))
     return [one for one in priced if np.isfinite(one[0])]
 
 

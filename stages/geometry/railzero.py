@@ -9,7 +9,7 @@ ruled developable.  At a kink a rail has two lattice lines, one for the tangent 
 Two arcs, or both ends of a loop, that enter and leave one side of a cell are not seen: the lattice is the resolution.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points3, Values, dot, norm
 from stages.geometry.curves import Curve
-from stages.geometry.roots import bracketed
+from stages.geometry.roots import Function, bracketed
 
 Flags = NDArray[np.bool_]
 
@@ -123,21 +123,25 @@ class Zero:
 Zeros = Mapping[Place, Zero]
 
 
-def zeros(found: Field) -> Zeros:
-    """Return every zero of F on a lattice line, to rounding."""
+Finder = Callable[[Function, Values, Values], Values]
+"""How a zero is found in its bracket: `bracketed` to rounding, `chord_zeros` roughly."""
+
+
+def zeros(found: Field, finder: Finder = bracketed) -> Zeros:
+    """Return every zero of F on a lattice line, to rounding unless another finder is given."""
     a, b = found.a, found.b
     below = found.F >= 0.0
     i, j = np.nonzero((below[:, :-1] != below[:, 1:]) & b.inside[None])
-    s, column_open = _crossings(a, b, i, j)
+    s, column_open = _crossings(a, b, i, j, finder)
     columns = zip(i.tolist(), j.tolist(), s.tolist(), column_open.tolist(), strict=True)
     k, m = np.nonzero((below[:-1] != below[1:]) & a.inside[:, None])
-    t, row_open = _crossings(b, a, m, k)
+    t, row_open = _crossings(b, a, m, k, finder)
     rows = zip(k.tolist(), m.tolist(), t.tolist(), row_open.tolist(), strict=True)
     on_columns = {("column", i, j): Zero(float(a.value[i]), s, is_open) for i, j, s, is_open in columns}
     return on_columns | {("row", k, m): Zero(t, float(b.value[m]), is_open) for k, m, t, is_open in rows}
 
 
-def _crossings(fixed: Lines, other: Lines, at: Indices, below: Indices) -> tuple[Values, Flags]:
+def _crossings(fixed: Lines, other: Lines, at: Indices, below: Indices, finder: Finder) -> tuple[Values, Flags]:
     """Return, for lines `at` of one rail, the zero between the lines `below` and the next of the other, and if open.
 
     F does not change when the rails are exchanged.
@@ -146,7 +150,7 @@ def _crossings(fixed: Lines, other: Lines, at: Indices, below: Indices) -> tuple
     for number, curve in enumerate(other.pieces):
         chosen = np.nonzero(other.piece[below] == number)[0]
         x, d, k = fixed.point[at[chosen]], fixed.slope[at[chosen]], below[chosen]
-        local = bracketed(partial(_mismatch_at, curve, x, d), other.local(k), other.local(k + 1))
+        local = finder(partial(_mismatch_at, curve, x, d), other.local(k), other.local(k + 1))
         found = curve.jet(local, 1)
         arm = found[0] - x
         values[chosen] = number + local

@@ -10,12 +10,12 @@ import numpy as np
 
 from stages.geometry.arrays import EPS, Indices, Values
 
+Function = Callable[[Values, Indices], Values]
+"""Values at places, given with the numbers of the brackets they belong to."""
 
-def bracketed(f: Callable[[Values, Indices], Values], low: Values, high: Values) -> Values:
-    """Return a zero in each bracket [low, high]; where both ends have one sign, the end that is nearer to zero.
 
-    f takes places and the numbers of the brackets they belong to.
-    """
+def bracketed(f: Function, low: Values, high: Values) -> Values:
+    """Return a zero in each bracket [low, high]; where both ends have one sign, the end that is nearer to zero."""
     from scipy.optimize import elementwise
 
     number = np.arange(low.size)
@@ -32,3 +32,12 @@ def bracketed(f: Callable[[Values, Indices], Values], low: Values, high: Values)
         )
         found[inside] = solved.x
     return found
+
+
+def chord_zeros(f: Function, low: Values, high: Values) -> Values:
+    """Return where the chord of f over each bracket is zero: within the square of the bracket of a simple zero."""
+    number = np.arange(low.size)
+    f_low, f_high = f(low, number), f(high, number)
+    rise = f_high - f_low
+    share = np.divide(-f_low, rise, out=np.full_like(rise, 0.5), where=rise != 0.0)
+    return np.asarray(low + np.clip(share, 0.0, 1.0) * (high - low))

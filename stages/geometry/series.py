@@ -72,3 +72,11 @@ def power(base: Array, exponent: float) -> Array:
         terms = [(j * (exponent + 1.0) - k) * base[j] * powers[k - j] for j in range(1, k + 1)]
         powers.append(np.sum(terms, axis=0) / (k * base[0]))
     return np.stack(powers)
+
+
+def unit(vector: Array) -> Array:
+    """Return a vector scaled to length 1; zero, with all its derivatives, where it is zero."""
+    squares = inner(vector, vector)
+    gone = squares[0] == 0.0
+    squares[0, gone] = 1.0
+    return scaled(power(squares, -0.5), np.where(gone[:, None], 0.0, vector))

@@ -1,21 +1,18 @@
 """Unit tangents of curves, and sums of curves: what tangent surfaces and surfaces of constant slope are made of.
 
-With w = r' and q = w . w, the speed s = sqrt(q) and the tangent T = w / s have the derivatives
-
-    s_n = (q_n - sum_{0<i<n} C(n,i) s_i s_{n-i}) / (2 s),      T_n = (w_n - sum_{0<i<=n} C(n,i) s_i T_{n-i}) / s,
-
-exact in every order by Leibniz's rule from s s = q and s T = w.  The tangent of a straight line is constant, that of a
-circle or a helix is circular motion again: those stay in closed form.  Not where a curve stops (r' = 0).
+The tangent T = r' / |r'| and its derivatives follow from the power series of r' (`series`), exact in every order.  The
+tangent of a straight line is constant, that of a circle or a helix is circular motion again: those stay in closed form.
+Not where a curve stops (r' = 0).
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb
 
 import numpy as np
 
-from stages.geometry.arrays import EPS, Array, ArrayValue, Matrix, Points3, Values, Vector3, dot, norm, unit
+from stages.geometry import series
+from stages.geometry.arrays import EPS, Array, ArrayValue, Matrix, Values, Vector3, dot, norm, unit
 from stages.geometry.curves import (
     Bezier,
     Circular,
@@ -77,17 +74,7 @@ class Sum(ArrayValue):
 
 def tangent_jet(w: Array) -> Array:
     """Return w / |w| and its derivatives, of the same shape as those of w, (order + 1, n, 3)."""
-    speeds: list[Values] = []
-    tangents: list[Points3] = []
-    for n in range(w.shape[0]):
-        q = sum((comb(n, i) * dot(w[i], w[n - i]) for i in range(n + 1)), np.zeros(w.shape[1]))
-        rest = sum((comb(n, i) * speeds[i] * speeds[n - i] for i in range(1, n)), np.zeros(w.shape[1]))
-        speeds.append((q - rest) / (2.0 * speeds[0]) if n else np.sqrt(q))
-        over = w[n] - sum(
-            (comb(n, i) * speeds[i][:, None] * tangents[n - i] for i in range(1, n + 1)), np.zeros(w.shape[1:])
-        )
-        tangents.append(over / speeds[0][:, None])
-    return np.stack(tangents)
+    return series.derivatives(series.unit(series.taylor(w)))
 
 
 def unit_tangent(curve: Curve) -> Curve:

@@ -257,11 +257,13 @@ def _angles(bends: Turning, pieces: Indices) -> Angle:
     return angle
 
 
-def turning_places(patches: Sequence[RuledPatch], steps: int) -> Values:
-    """Return the steps - 1 inner places that divide the turning of a strip, folds included, into equal parts."""
+def turning_places(bends: Turning, count: int, steps: int) -> Values:
+    """Return the steps - 1 inner places that divide the turning of a strip of `count` patches into equal parts.
+
+    Folds are included; a plane is divided evenly by the parameter.
+    """
     shares = np.arange(1, steps) / steps
-    bends = turning(patches)
-    return places(bends, bends.stretches, shares) if bends.stretches else shares * len(patches)
+    return places(bends, bends.stretches, shares) if bends.stretches else shares * count
 
 
 def chord_turning(patches: Sequence[RuledPatch], chords: int = 512) -> float:

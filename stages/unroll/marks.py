@@ -11,7 +11,7 @@ import numpy as np
 from stages.geometry import biarc
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.flatmap import DevelopedRuling, Development
-from stages.geometry.turning import places, turning
+from stages.geometry.turning import turning, turning_places
 from stages.model.features import RulingMarks
 from stages.model.pattern import Mark
 
@@ -23,8 +23,7 @@ def ruling_marks(development: Development, spec: RulingMarks, *, chord_mm: float
     """
     bends = turning(tuple(piece.patch for piece in development.pieces))
     steps = spec.count + 1 if spec.count is not None else _steps(bends.total_rad, spec)
-    shares = np.arange(1, steps) / steps
-    found = places(bends, bends.stretches, shares) if bends.stretches else shares * len(development.pieces)
+    found = turning_places(bends, len(development.pieces), steps)
     return tuple(
         Mark(f"{spec.name}-{i}", _line(development, float(place), chord_mm)) for i, place in enumerate(found, 1)
     )

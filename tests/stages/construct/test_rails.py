@@ -18,7 +18,7 @@ from stages.model.rails import Rails
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import Tolerances
 from tests.near import assert_near, assert_relative
-from tests.parts import Table, passage, read, troubles
+from tests.parts import Passage, Table, passage, read, troubles
 
 SQUARE = [[1.5, -1.5, 0], [1.5, 1.5, 0], [-1.5, 1.5, 0], [-1.5, -1.5, 0], [1.5, -1.5, 0]]
 ROUND: Table = {"circle": {"center": [0, 0, 2], "radius": 1, "normal": [0, 0, 1]}}
@@ -29,16 +29,16 @@ def rails(a: Table, b: Table, **keys: object) -> Table:
     return {"kind": "rails", "rail_a": a, "rail_b": b} | keys
 
 
-def area(surface: Table) -> float:
-    value = passage(surface).side("surface")["area"]
+def area(made: Passage) -> float:
+    value = made.side("surface")["area"]
     assert isinstance(value, float)
     return value
 
 
-def rows(surface: Table) -> list[dict[str, object]]:
-    found = passage(surface).reports["construct"].detail["pieces"]
+def kinds(made: Passage) -> list[str]:
+    found = made.reports["construct"].detail["pieces"]
     assert isinstance(found, list)
-    return found
+    return sorted(row["kind"] for row in found)
 
 
 def rotated(points: list[list[float]], by: int) -> list[list[float]]:
@@ -52,14 +52,16 @@ def test_a_circle_over_a_square_takes_four_triangles_and_four_cones(by: int, bac
     points = rotated(SQUARE, by)
     surface = rails(ROUND, {"polyline": points[::-1] if backwards else points})
     made = passage(surface)
-    assert sorted(str(row["kind"]) for row in rows(surface)) == ["cone"] * 4 + ["triangle"] * 4
-    assert_relative([area(surface)], [19.2931879458967], bound=1e-13, why="15 digits are known")
+    assert kinds(made) == ["cone"] * 4 + ["triangle"] * 4
+    assert_relative([area(made)], [19.2931879458967], bound=1e-13, why="15 digits are known")
     assert made.value("construct", "join_normal_deg") < 1e-12
     assert made.value("verify", "max_warp_deg") <= 1e-9
 
 
 def test_the_rails_may_be_exchanged() -> None:
-    assert_relative([area(rails({"polyline": SQUARE}, ROUND))], [19.2931879458967], bound=1e-13, why="the same strip")
+    assert_relative(
+        [area(passage(rails({"polyline": SQUARE}, ROUND)))], [19.2931879458967], bound=1e-13, why="the same strip"
+    )
 
 
 @pytest.mark.parametrize("minor", [[1, 0, 0], [-1, 0, 0]])
@@ -67,8 +69,8 @@ def test_an_ellipse_over_an_ellipse_is_one_ruled_strip(minor: list[int]) -> None
     lower = {"ellipse": {"center": [0, 0, 0], "major": [2, 0, 0], "minor": [0, 1, 0]}}
     surface = rails(lower, {"ellipse": {"center": [0, 0, 2], "major": [0, 2, 0], "minor": minor}})
     made = passage(surface)
-    assert {row["kind"] for row in rows(surface)} == {"ruled"}
-    assert_relative([area(surface)], [20.7300282819194], bound=1e-13, why="15 digits are known")
+    assert set(kinds(made)) == {"ruled"}
+    assert_relative([area(made)], [20.7300282819194], bound=1e-13, why="15 digits are known")
     assert_relative([made.side("surface")["edges"]["c0"]], [9.68844822054768], bound=1e-13, why="the ellipse")
     assert made.value("verify", "max_warp_deg") <= 1e-9
 
@@ -134,11 +136,11 @@ def test_rails_of_many_pieces_are_run_through_without_cones() -> None:
     high = [[float(np.cos(a + 0.1)), float(2 * np.sin(a + 0.1)), 2.0] for a in angles]
     spec = read(rails({"points": [*low, low[0]]}, {"points": [*high, high[0]]})).surface
     assert isinstance(spec, Rails)
-    patches, findings, detail = rail_strip(spec, Tolerances())
-    assert not findings
-    assert isinstance(detail["pieces"], list)
-    assert {row["kind"] for row in detail["pieces"]} == {"ruled"}
-    assert max(join(p, q).normal_rad for p, q in pairwise(patches)) < 1e-9
+    built = rail_strip(spec, Tolerances())
+    assert not built.findings
+    assert isinstance(built.detail["pieces"], list)
+    assert {row["kind"] for row in built.detail["pieces"]} == {"ruled"}
+    assert max(join(p, q).normal_rad for p, q in pairwise(built.patches)) < 1e-9
 
 
 def test_a_least_radius_refuses_cones_on_a_rail() -> None:
@@ -156,7 +158,7 @@ def test_a_least_radius_refuses_a_ruled_strip_that_bends_more_sharply() -> None:
     for factor, codes in ((0.999, []), (1.01, ["min-radius"])):
         spec = read(rails(lower, upper, min_radius=factor * radius)).surface
         assert isinstance(spec, Rails)
-        assert [finding.code for finding in rail_strip(spec, Tolerances())[1]] == codes
+        assert [finding.code for finding in rail_strip(spec, Tolerances()).findings] == codes
 
 
 @pytest.mark.parametrize(
