@@ -80,8 +80,8 @@ def _apex_findings(found: Sharpest, judged: Sharpest | Finding | None) -> list[F
         return []
     rest = ""
     if isinstance(judged, Sharpest):
-        rest = f"; along the edges that are none the inside radius is at least {max(judged.inside_mm, 0.0):.4g} mm"
-    message = f"rulings meet in an apex, where the sheet bends to nothing{rest}: cut the tip off, or crease it"
+        rest = f" (along the other edges the inside radius is at least {max(judged.inside_mm, 0.0):.4g} mm)"
+    message = f"rulings meet in an apex, where the sheet is bent to radius 0{rest}: cut the tip off, or crease it"
     return [Finding("sharp-apex", message, False, found.where)]
 
 
