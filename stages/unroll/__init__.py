@@ -157,17 +157,21 @@ def _strain_findings(strain: Metric, by_warp: Class, tol: Tolerances) -> tuple[F
 def _overlap(outer: Contour) -> Metric:
     """Return the area that the pattern covers twice: proved where the lines and arcs that are cut cover none.
 
-    Where edges meet at almost no angle, arcs fitted to them cross by less than the chord: what is left of that on arcs
-    sixteen times as fine (1/64, where two edges part like a parabola) is not the pattern's own.
+    Where edges meet at almost no angle, arcs fitted to them cross by less than the chord: what goes away on finer arcs
+    (as chord^1.5, where two edges part like a parabola) is not the pattern's own.
     """
+    allowed = outer.chord_mm**2
     covered = doubled(outer.path)
     if covered == 0.0:
-        return Metric("overlap_mm2", 0.0, "mm2", "proved", outer.chord_mm**2)
-    finer = doubled(outline.contour(outer.edges, outer.chord_mm / FINER).path)
-    return Metric("overlap_mm2", min(covered, finer), "mm2", "sampled", outer.chord_mm**2)
+        return Metric("overlap_mm2", 0.0, "mm2", "proved", allowed)
+    for times in FINER:
+        if covered > allowed:
+            covered = min(covered, doubled(outline.contour(outer.edges, outer.chord_mm / times).path))
+    return Metric("overlap_mm2", covered, "mm2", "sampled", allowed)
 
 
-FINER = 16.0
+FINER = 4.0, 16.0
+"""How many times as fine the arcs are on which an overlap is looked at again."""
 
 
 def _overlap_findings(covered: Metric) -> tuple[Finding, ...]:
