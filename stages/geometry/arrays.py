@@ -23,8 +23,9 @@ if TYPE_CHECKING or "jaxtyping" in sys.modules:
     Matrix = Float64[np.ndarray, "n m"]
     Mask = Bool[np.ndarray, " n"]
     Indices = Int64[np.ndarray, " n"]
+    Triples = Int64[np.ndarray, "m 3"]
 else:
-    Values = Points2 = Points3 = Vector2 = Vector3 = Matrix = Mask = Indices = np.ndarray
+    Values = Points2 = Points3 = Vector2 = Vector3 = Matrix = Mask = Indices = Triples = np.ndarray
 
 Array = NDArray[np.float64]
 """An array of float64 whose shape the docstring gives."""
@@ -39,7 +40,7 @@ ValueT = TypeVar("ValueT", bound="ArrayValue")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArrayValue:
-    """A read-only value: its arrays are copied, made float64 and locked, then `check` is called.
+    """A read-only value: its arrays are copied, made float64 (whole numbers: int64) and locked, then `check` is called.
 
     A pickle would drop numpy's read-only flag and skip the check, so `__reduce__` constructs the value again.
     """
@@ -48,7 +49,7 @@ class ArrayValue:
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
-                object.__setattr__(self, field.name, locked(value))
+                object.__setattr__(self, field.name, _numbers(value) if value.dtype.kind == "i" else locked(value))
         self.check()
 
     def check(self) -> None:
@@ -65,6 +66,13 @@ class ArrayValue:
 def locked(values: Array) -> Array:
     """Return a read-only float64 copy."""
     copy = np.array(values, dtype=np.float64)
+    copy.setflags(write=False)
+    return copy
+
+
+def _numbers(values: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return a read-only int64 copy."""
+    copy = np.array(values, dtype=np.int64)
     copy.setflags(write=False)
     return copy
 
