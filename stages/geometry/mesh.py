@@ -24,7 +24,7 @@ class Mesh(ArrayValue):
 
     def check(self) -> None:
         """Raise ValueError where a face names a vertex that is not there, or a vertex is not finite."""
-        if self.faces.size and not (0 <= self.faces.min() and self.faces.max() < len(self.vertices)):
+        if self.faces.size and not (self.faces.min() >= 0 and self.faces.max() < len(self.vertices)):
             raise ValueError("a face names a vertex that is not there")
         if not np.all(np.isfinite(self.vertices)):
             raise ValueError("a vertex is not finite")
