@@ -23,12 +23,16 @@ if TYPE_CHECKING or "jaxtyping" in sys.modules:
     Matrix = Float64[np.ndarray, "n m"]
     Mask = Bool[np.ndarray, " n"]
     Indices = Int64[np.ndarray, " n"]
+    Pairs = Int64[np.ndarray, "k 2"]
     Triples = Int64[np.ndarray, "m 3"]
 else:
-    Values = Points2 = Points3 = Vector2 = Vector3 = Matrix = Mask = Indices = Triples = np.ndarray
+    Values = Points2 = Points3 = Vector2 = Vector3 = Matrix = Mask = Indices = Pairs = Triples = np.ndarray
 
 Array = NDArray[np.float64]
 """An array of float64 whose shape the docstring gives."""
+
+Numbers = NDArray[np.int64]
+"""An array of whole numbers whose shape the docstring gives."""
 
 EPS = float(np.finfo(np.float64).eps)
 """Spacing of the doubles at 1: 2.2e-16."""
