@@ -13,8 +13,8 @@ import numpy as np
 
 from stages.geometry.arrays import Numbers, Points2, Values, Vector2, cross2, norm
 
-POLYGON_TURN = radians(40.0)
-"""A polygon of nine sides turns by this at each: what turns more was never a smooth curve."""
+POLYGON_TURN = radians(44.0)
+"""A polygon of eight sides turns by 45 deg at each: what turns more was never a smooth curve."""
 
 CORNER = radians(12.0)
 """Where a circle through three neighbours misses the direction of a smooth edge by half of it, the edge is sampled too

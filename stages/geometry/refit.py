@@ -32,8 +32,8 @@ LEAST_SPLINE = 5
 """Points below which every other one is no curve."""
 
 LEFT = 0.25
-"""Share of the change from twice the spacing that is left at this spacing: 1/15 where points are even (the error of cubic
-splines falls with the fourth power), up to 0.2 seen where distances differ ninefold."""
+"""Share of the change from twice the spacing that is left at this spacing: 1/15 where points are even (the error of
+cubic splines falls with the fourth power), up to 0.2 seen where distances differ ninefold."""
 
 
 @dataclass(frozen=True, slots=True)

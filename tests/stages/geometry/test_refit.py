@@ -78,7 +78,7 @@ def test_the_sagitta_is_how_far_a_circle_leaves_its_polygon() -> None:
 
 
 def test_a_polygon_of_few_sides_stays_a_polygon_and_one_of_many_does_not() -> None:
-    for count, expected in ((3, 3), (4, 4), (8, 8), (9, 9), (16, 0)):
+    for count, expected in ((3, 3), (4, 4), (8, 8), (9, 0), (16, 0)):
         angle = 2.0 * pi * np.arange(count) / count
         assert corners(np.column_stack([np.cos(angle), np.sin(angle)])).size == expected, count
 
