@@ -1,4 +1,4 @@
-"""Set-up and chores in one command each: `python3 dev.py demo | test | lint | types | imports | bench`.
+"""Set-up and chores in one command each: `python3 dev.py demo | test | lint | types | imports | bench | gallery`.
 
 The standard library only, on Linux, macOS and Windows, Python 3.11 or later.  The environment lies in `.venv`; its
 packages are those of `requirements.lock`, checked by their hashes, through `uv` where it is on the PATH and through
@@ -29,6 +29,7 @@ CHORES: dict[str, list[list[str]]] = {
     "lint": [["-m", "ruff", "check", "."], ["-m", "ruff", "format", "--check", "."]],
     "types": [["-m", "mypy"]],
     "imports": [["-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]],
+    "gallery": [["samples/gallery.py"]],
     "bench": [["-m", "pytest", "-o", "addopts=", "--benchmark-only", "tests/bench"]],
 }
 

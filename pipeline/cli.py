@@ -113,8 +113,10 @@ def load(job: Path, settings: Sequence[str], *, quiet: bool) -> "Job":
     """Return the job of a file after telling what was assumed."""
     from pipeline.job import job_of
     from pipeline.jobfile import read
+    from pipeline.sources import silent
 
-    ready = job_of(read(job, settings))
+    told = message if sys.stderr.isatty() and not quiet else silent
+    ready = job_of(read(job, settings, told))
     for note in () if quiet else ready.notes:
         message(f"note: {note}")
     return ready

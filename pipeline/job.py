@@ -22,9 +22,10 @@ class Job:
     """One job; the stages see nothing else.
 
     name: of the job, or of its file.
-    digest: sha256 of the values of the job file and of the drawings it points at; layout and comments do not count.
+    digest: sha256 of the values of the job file and of the drawings and meshes it points at; layout and comments do not
+        count.
     limits: what the parts are held against, and who said so.
-    inputs: name and sha256 of the job file and of every drawing that it points at.
+    inputs: name and sha256 of the job file and of every file that it points at.
     notes: what was assumed where the job file leaves a choice.
     """
 
@@ -53,7 +54,7 @@ def job_of(read: ReadJob) -> Job:
     process, process_notes = _process(tables.process, material.thickness_mm)
     return Job(
         name=tables.job.name or read.file.stem,
-        parts=tuple(Part(spec, material, process) for spec in tables.part),
+        parts=tuple(_part(read, number, material, process) for number in range(len(tables.part))),
         material=material,
         process=process,
         stock=_stock(tables),
@@ -64,11 +65,36 @@ def job_of(read: ReadJob) -> Job:
         customer=tables.job.customer,
         revision=tables.job.revision,
         units=tables.units,
-        digest=sha256(canonical(tables)).hexdigest(),
+        digest=_digest(read),
         limits=limits_of(tables),
         inputs=read.inputs,
         notes=(*read.notes, *material_notes, *process_notes),
     )
+
+
+def _part(read: ReadJob, number: int, material: Material, process: Process) -> Part:
+    """Return one part, with the mesh or the faces that its file holds if it is made from one."""
+    spec, source = read.tables.part[number], read.meshes.get(number)
+    if number in read.faces:
+        return Part(spec, material, process, read.faces[number].body)
+    if source is None:
+        return Part(spec, material, process)
+    from pipeline.meshsources import doubts
+
+    sheets = [(float(row.width), float(row.height)) for row in read.tables.stock]
+    return Part(spec, material, process, source.mesh, doubts(source, sheets))
+
+
+def _digest(read: ReadJob) -> str:
+    """Return the sha256 of everything that the job is made of."""
+    whole = sha256(canonical(read.tables))
+    for number, source in sorted(read.meshes.items()):
+        whole.update(f"{number} {len(source.mesh.vertices)} ".encode())
+        whole.update(source.mesh.vertices.astype("<f8").tobytes())
+        whole.update(source.mesh.faces.astype("<i8").tobytes())
+    for number, faces in sorted(read.faces.items()):
+        whole.update(f"{number} {faces.digest} ".encode())
+    return whole.hexdigest()
 
 
 def _material(table: MaterialTable) -> tuple[Material, tuple[str, ...]]:

@@ -6,11 +6,11 @@ this version does what it says.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path as FilePath
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import Meta, field
 
@@ -18,15 +18,21 @@ from pipeline.decode import Complaint, Walk, decode
 from pipeline.locate import Place, nearest, places
 from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, text_of
 from pipeline.paths import Path, written
-from pipeline.sources import Sources
+from pipeline.sources import Sources, Tell, silent
 from pipeline.units import JOB_UNITS
 from stages.errors import BadInputError, Problem
 from stages.model.curves import Table, Trouble, negatives, not_positive
 from stages.model.cutfile import Flavour, Version
 from stages.model.ducts import is_set
+from stages.model.faces import FaceFile
+from stages.model.meshes import MeshFile
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
 from stages.model.tolerances import Class, Tolerances
+
+if TYPE_CHECKING:
+    from pipeline.cadfiles import CadSource
+    from pipeline.meshsources import MeshSource
 
 DEFAULTS = Tolerances()
 Text = Annotated[str, Meta(max_length=200)]
@@ -206,12 +212,17 @@ class JobFile(Table, frozen=True, kw_only=True):
 
 def taken_by_blanks(parts: Sequence[PartSpec]) -> Iterator[Trouble]:
     """Yield the names that a blank of a divided part, or of a set, may take, `<part>.<n>`."""
-    divided = {part.name.casefold() for part in parts if part.cut == "auto" or is_set(part.surface)}
+    divided = {part.name.casefold() for part in parts if _may_divide(part)}
     for i, part in enumerate(parts):
         whole, _, number = part.name.casefold().rpartition(".")
         if number.isdecimal() and whole in divided:
             hint = "choose a name that does not end in a dot and a number"
             yield Trouble(f"part[{i}].name", f'"{part.name}" may be a blank of "{whole}"', hint)
+
+
+def _may_divide(part: PartSpec) -> bool:
+    """Return whether a part may become several blanks."""
+    return part.cut == "auto" or is_set(part.surface) or isinstance(part.surface, MeshFile | FaceFile)
 
 
 def repeated(table: str, key: str, names: Sequence[str]) -> Iterator[Trouble]:
@@ -227,23 +238,26 @@ def repeated(table: str, key: str, names: Sequence[str]) -> Iterator[Trouble]:
 class ReadJob:
     """A job file as read: its tables, where it lies, and what was noted on the way.
 
-    inputs: name and sha256 of the job file and of every drawing that it points at.
+    inputs: name and sha256 of the job file and of every drawing and mesh that it points at.
+    meshes, faces: those of the parts that have them, by their numbers.
     """
 
     tables: JobFile
     file: FilePath
     notes: tuple[str, ...]
     inputs: tuple[tuple[str, str], ...]
+    meshes: Mapping[int, "MeshSource"] = field(default_factory=dict)
+    faces: Mapping[int, "CadSource"] = field(default_factory=dict)
 
 
-def read(file: FilePath, settings: Iterable[str] = ()) -> ReadJob:
-    """Return the job; `BadInputError` with every problem, each with its place."""
+def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent) -> ReadJob:
+    """Return the job; `BadInputError` with every problem, each with its place.  tell: is told what takes long."""
     content = read_bytes(file)
     text = text_of(content, file)
     raw = parse(text, file)
     set_paths = override(raw, settings)
     walk = Walk(unit=_unit(raw))
-    sources = Sources(file.parent, walk.unit)
+    sources = Sources(file.parent, walk.unit, tell=tell)
     walk.resolve = sources.resolve
     try:
         tables = decode(walk, JobFile, raw)
@@ -252,7 +266,7 @@ def read(file: FilePath, settings: Iterable[str] = ()) -> ReadJob:
     if tables is None:
         raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
     inputs = ((file.name, sha256(content).hexdigest()), *sources.digests)
-    return ReadJob(tables, file, tuple(sources.notes), inputs)
+    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces)
 
 
 def _unit(raw: dict[str, object]) -> str:

@@ -30,8 +30,10 @@ def with_seams(runs: "Sequence[PartRun]", seams: "Sequence[Seam]", tol: Toleranc
 def length(run: "PartRun", side: "Edges") -> float:
     """Return the length of a seam's side in the flat, mm."""
     flat = run.steps[-1].report.detail["flat"]
-    edges = flat["edges"] if isinstance(flat, dict) else {}
-    return sum(float(edges[name]) for name in side.edges)
+    if not isinstance(flat, dict):
+        raise ValueError(f"the pattern of {side.blank!r} has no lengths")
+    lengths = {"outline": flat["outline_length"]} | (flat["edges"] or {})
+    return sum(float(lengths[name]) for name in side.edges)
 
 
 def _told(run: "PartRun", seam: "Seam", difference: float, tol: Tolerances) -> "PartRun":

@@ -5,6 +5,7 @@ without a unit has that of the job, and that is noted.  Pieces whose ends meet b
 An outline must be closed; the holes of a plate are all closed contours of their layer.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path as FilePath
@@ -14,11 +15,15 @@ from pipeline.decode import ResolveError, Several, suggestion
 from pipeline.paths import Path
 from pipeline.units import UnreadableError
 from stages.model.curves import CurveSpec, Table
+from stages.model.faces import FaceFile
+from stages.model.meshes import MeshFile
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
+    from pipeline.cadfiles import CadSource
     from pipeline.drawings import Piece
+    from pipeline.meshsources import MeshSource
 
 UNIT_OF_CODE = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m", 13: "um"}
 """$INSUNITS, as the DXF reference numbers the units; 0 is none."""
@@ -28,18 +33,36 @@ LARGEST_DRAWING = 100_000_000
 """Bytes."""
 
 
+Tell = Callable[[str], None]
+"""Is told what takes long."""
+
+
+def silent(_text: str) -> None:
+    """Tell no one."""
+
+
 @dataclass(slots=True)
 class Sources:
-    """The drawings of one job file, each read once, and their names and sha256."""
+    """The drawings and meshes of one job file, each read once, and their names and sha256.
+
+    meshes, faces: by the number of the part.  tell: is told what takes long.
+    """
 
     folder: FilePath
     unit: str
     notes: list[str] = field(default_factory=list)
     drawings: dict[FilePath, "Drawing"] = field(default_factory=dict)
     digests: list[tuple[str, str]] = field(default_factory=list)
+    meshes: dict[int, "MeshSource"] = field(default_factory=dict)
+    faces: dict[int, "CadSource"] = field(default_factory=dict)
+    tell: Tell = silent
 
     def resolve(self, table: Table, path: Path) -> Table | Several:
         """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
+        if isinstance(table, MeshFile):
+            self._read_mesh(table, path)
+        if isinstance(table, FaceFile):
+            self._read_faces(table, path)
         if not isinstance(table, CurveSpec) or table.file is None:
             return table
         curves, key = self._curves(table.file, table.layer), "layer" if table.layer else "file"
@@ -52,6 +75,29 @@ class Sources:
         if path[-1:] == ("outline",):
             _all_closed(curves, key)
         return curves[0].spec()
+
+    def _read_mesh(self, table: MeshFile, path: Path) -> None:
+        """Read the mesh of a part."""
+        from pipeline.meshsources import content_of, mesh_source
+
+        content = content_of(self.folder, table.file, self.tell)
+        source = mesh_source(content, table, self.unit)
+        said = table.file, sha256(content).hexdigest()
+        if said not in self.digests:
+            self.digests.append(said)
+        note = f"{table.file} states no unit: taken as {source.unit}, the unit of the job"
+        if source.assumed and note not in self.notes:
+            self.notes.append(note)
+        self.meshes.update({number: source for number in path if isinstance(number, int)})
+
+    def _read_faces(self, table: FaceFile, path: Path) -> None:
+        """Read the faces of a part."""
+        from pipeline.cadfiles import cad_source
+
+        source = cad_source(self.folder, table)
+        if (table.file, source.digest) not in self.digests:
+            self.digests.append((table.file, source.digest))
+        self.faces.update({number: source for number in path if isinstance(number, int)})
 
     def _curves(self, name: str, layer: str | None) -> "list[Piece]":
         """Return all curves of a layer, or of the whole model space."""

@@ -1,26 +1,11 @@
-"""Every sample runs as it is, and its report holds the figures that closed forms and 30-digit quadrature give."""
+"""Paper, hopper, bag and guard run as they are; their reports hold the figures of closed forms and quadrature."""
 
-import json
 from math import cos, hypot, pi, sin
-from pathlib import Path
 
 import pytest
 
-from pipeline.job import job_of
-from pipeline.jobfile import read
-from pipeline.outputs import outputs
-from pipeline.run import run_job
 from tests.near import assert_near
-
-SAMPLES = Path(__file__).parent.parent / "samples"
-LAST_DIGITS = 1e-12
-"""What the program promises for lengths and areas, relative."""
-
-
-def run(name: str) -> tuple[dict, int, dict[str, bytes]]:
-    result = run_job(job_of(read(SAMPLES / name, ["report.formats=['json']"])))
-    report, files = outputs(result)
-    return json.loads(json.dumps(report)), result.exit_code, files
+from tests.samples import LAST_DIGITS, both_sides, figure, run
 
 
 @pytest.fixture(scope="module")
@@ -37,18 +22,6 @@ def hopper() -> dict:
     report, code, _ = run("hopper/job.toml")
     assert code == 0, report
     return report
-
-
-def figure(part: dict, stage: str, name: str) -> dict:
-    metrics = next(entry for entry in part["stages"] if entry["stage"] == stage)["metrics"]
-    return next(metric for metric in metrics if metric["name"] == name)
-
-
-def both_sides(part: dict, key: str) -> list[float]:
-    """The surface's and the flat pattern's figure, which are measured separately."""
-    if key == "area":
-        return [part["surface"]["area"], part["flat"]["area"]]
-    return [part["surface"]["edges"][key], part["flat"]["edges"][key]]
 
 
 PAPER_FIGURES = [

@@ -27,12 +27,14 @@ from pipeline.report.pictures_canvas import (
     wrapped,
 )
 from pipeline.report.pictures_edges import side_area
+from pipeline.report.pictures_features import drawn_on
 from pipeline.report.pictures_flat import Room, compound, draw_pattern, pattern_room
+from pipeline.report.pictures_mesh import draw_mesh, mesh_sight, mesh_view
 from pipeline.report.pictures_net import net, view_direction
 from pipeline.report.pictures_sheet import sheet_picture
 from pipeline.report.pictures_surface import MARGINS, draw_surface, sight
 from stages.model.pattern import FlatPattern
-from stages.model.surface import Plate, RuledSurface, Surface
+from stages.model.surface import MeshSurface, Plate, RuledSurface, Surface
 
 __all__ = ["part_picture", "sheet_picture"]
 
@@ -112,10 +114,16 @@ def _accepted(
         turned = rooms[True].shown_in(page) * TURNED_WORTH > rooms[False].shown_in(page)
         draw_pattern(canvas, page, pattern, rooms[turned])
         return
+    if isinstance(surface, MeshSurface):
+        seen_from = mesh_view(surface)
+        plan = arrangement(page, mesh_sight(surface, seen_from), pattern)
+        draw_mesh(canvas, plan.formed, surface, seen_from)
+        draw_pattern(canvas, plan.flat, pattern, plan.room)
+        return
     shape = net(surface, worst_v)
     frame = view_direction(shape)
     plan = arrangement(page, sight(shape, frame), pattern)
-    draw_surface(canvas, plan.formed, shape, frame)
+    draw_surface(canvas, plan.formed, shape, frame, drawn_on(shape, pattern))
     draw_pattern(canvas, plan.flat, pattern, plan.room, worst_v)
 
 
@@ -167,6 +175,8 @@ def _rejected(canvas: Canvas, surface: Surface, notes: Sequence[str], worst_v: f
     if isinstance(surface, RuledSurface):
         shape = net(surface, worst_v)
         draw_surface(canvas, box, shape, view_direction(shape))
+    elif isinstance(surface, MeshSurface):
+        draw_mesh(canvas, box, surface, mesh_view(surface))
     else:
         _plain_plate(canvas, box, surface)
     canvas.text((left, HEIGHT - HEAD - 0.35), "REJECTED", 22.0, VERMILLION, ("left", "center"), bold=True)

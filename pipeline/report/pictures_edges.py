@@ -11,27 +11,37 @@ from pipeline.report.pictures_canvas import length_text
 from stages.geometry import arcpath
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Values, cross2, norm
-from stages.geometry.flatmap import DevelopedEdge
-from stages.geometry.plane import PlaneCurve
+from stages.geometry.flatmap import DevelopedEdge, DevelopedRuling, FlatPiece
+from stages.geometry.plane import PlaneCurve, Stretch
 from stages.model.pattern import FlatPattern
 
 Sides = Mapping[str, tuple[PlaneCurve, ...]]
 
 
 def sides(pattern: FlatPattern) -> Sides:
-    """Return the edges called start, c1, end and c0 of a strip, in the order of its outline; none of a plate."""
-    edges = pattern.outer.edges
-    there = tuple(edge for edge in edges if isinstance(edge, DevelopedEdge) and not edge.reverse)
-    back = tuple(edge for edge in edges if isinstance(edge, DevelopedEdge) and edge.reverse)
-    rest = [edge for edge in edges if not isinstance(edge, DevelopedEdge)]
-    if not there or len(there) != len(back) or len(rest) != len(("start", "end")):
+    """Return the edges called start, c1, end and c0 of a strip, in the order of its outline; none of a plate.
+
+    Whole edges, also where a notch takes a bite out of one.
+    """
+    pieces = flat_pieces(pattern)
+    if not pieces:
         return {}
-    return {"start": (rest[0],), "c1": there, "end": (rest[1],), "c0": back}
+    first, last = DevelopedRuling(pieces[0], 0.0), DevelopedRuling(pieces[-1], 1.0, reverse=True)
+    there = tuple(DevelopedEdge(piece, 1.0) for piece in pieces)
+    back = tuple(DevelopedEdge(piece, 0.0, reverse=True) for piece in pieces[::-1])
+    return {"start": (first,), "c1": there, "end": (last,), "c0": back}
+
+
+def flat_pieces(pattern: FlatPattern) -> list[FlatPiece]:
+    """Return the pieces of the flat map in order, from the edge c1 of the outline; none for a plate."""
+    whole = [edge.curve if isinstance(edge, Stretch) else edge for edge in pattern.outer.edges]
+    there = [edge for edge in whole if isinstance(edge, DevelopedEdge) and not edge.reverse]
+    return [edge.piece for i, edge in enumerate(there) if i == 0 or edge.piece is not there[i - 1].piece]
 
 
 def rulings(pattern: FlatPattern, places: Sequence[float] | Array) -> list[Points2]:
     """Return the rulings at v, counted over the pieces, each by its two ends in mm."""
-    pieces = [edge.piece for edge in sides(pattern).get("c1", ()) if isinstance(edge, DevelopedEdge)]
+    pieces = flat_pieces(pattern)
     if not pieces:
         return []
     whole = np.clip(np.floor(places).astype(np.int64), 0, len(pieces) - 1)
@@ -71,14 +81,14 @@ def gauss_panels() -> tuple[Values, Values]:
 def hole_text(path: ArcPath) -> str:
     """Return a diameter if the hole is a circle, else width x height, mm."""
     low_x, low_y, high_x, high_y = arcpath.bounds(path)
-    radii = arcpath.radii(path)
     middle = np.array([(low_x + high_x) / 2.0, (low_y + high_y) / 2.0])
-    off = norm(path.vertices - middle) - radii
-    if np.isfinite(radii).all() and np.abs(off).max() <= ROUND * radii.max() and np.ptp(radii) <= ROUND * radii.max():
-        return f"\u2300{length_text(2.0 * float(radii.max()))}"
+    radius = (high_x - low_x + high_y - low_y) / 4.0
+    off = norm(arcpath.polygon(path, accuracy=ROUND * radius / 4.0) - middle) - radius
+    if np.abs(off).max() <= ROUND * radius:
+        return f"\u2300{length_text(2.0 * radius)}"
     return f"{length_text(high_x - low_x)} \u00d7 {length_text(high_y - low_y)}"
 
 
 ROUND = 1e-3
-"""Arcs whose radii and centres differ by less, relative to the radius, look like one circle: a hole drilled through a
-bent sheet is one to the four digits that are written."""
+"""A hole whose points are as far from its middle but for this share looks like a circle: one drilled through a bent
+sheet is one to the four digits that are written."""

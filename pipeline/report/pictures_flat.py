@@ -20,8 +20,6 @@ from pipeline.report.pictures_canvas import (
     Box,
     Canvas,
     Fit,
-    HAlign,
-    VAlign,
     arrow,
     caption,
     fitted,
@@ -29,7 +27,8 @@ from pipeline.report.pictures_canvas import (
     scale_bar,
 )
 from pipeline.report.pictures_edges import corner_points, hole_text, rulings, side_length, sides
-from pipeline.report.pictures_marks import draw_marks, marks_legend
+from pipeline.report.pictures_flat_names import LONG_ENOUGH, ROOM_PER_SIGN, upright, write_edge_names
+from pipeline.report.pictures_marks import draw_marks, has_bends, marks_legend
 from pipeline.report.pictures_net import ruling_places
 from pipeline.report.pictures_surface import COLOURS, EDGE_WIDTH, RULING_WIDTH, WORST_WIDTH
 from stages.geometry import arcpath
@@ -46,9 +45,6 @@ SAMPLES = 65
 
 MANY_JOINTS = 600
 """Beyond so many joints of lines and arcs they would hide the line; they are left out."""
-
-LONG_ENOUGH = 1.15
-"""Inches that a line of dimension text takes: shorter edges have it beside them, upright."""
 
 DIMENSION_GAP = 0.42
 BESIDE_GAP = 1.45
@@ -103,16 +99,18 @@ def draw_pattern(canvas: Canvas, box: Box, pattern: FlatPattern, room: Room, wor
     lines = [fit.place(closed_polygon(contour.path, fit)) for contour in contours_drawn]
     canvas.areas([compound(lines)], PART_FILL)
     pieces = len(sides(pattern).get("c1", ()))
-    canvas.lines([fit.place(line) for line in rulings(pattern, ruling_places(pieces))], GREY, RULING_WIDTH)
+    if not has_bends(pattern):
+        canvas.lines([fit.place(line) for line in rulings(pattern, ruling_places(pieces))], GREY, RULING_WIDTH)
     if worst_v is not None:
         canvas.lines([fit.place(line) for line in rulings(pattern, [worst_v])], PURPLE, WORST_WIDTH)
     draw_marks(canvas, pattern, fit)
+    canvas.areas([compound([ring[::-1]]) for ring in lines[1:]], "white")
     _bands(canvas, pattern, fit)
     canvas.lines(lines, INK, 0.8)
     _joints(canvas, contours_drawn, fit)
-    _edge_names(canvas, pattern, fit)
-    _hole_names(canvas, pattern.inner, fit)
     _overall(canvas, pattern, fit)
+    write_edge_names(canvas, pattern, fit)
+    _hole_names(canvas, pattern.inner, fit)
     _flat_axes(canvas, box, fit)
     scale_bar(canvas, box.right - 0.3, box.bottom + 0.28, fit.scale, min(1.4, box.width / 4.0))
     caption(
@@ -124,7 +122,7 @@ def _legend(pattern: FlatPattern, turned: bool) -> str:
     count = sum(contour.path.bulges.size for contour in (pattern.outer, *pattern.inner))
     words = [f"cut: {count} lines and arcs"]
     words += marks_legend(pattern)
-    if sides(pattern):
+    if sides(pattern) and not has_bends(pattern):
         words.append("grey: rulings")
     return "   ".join(words + ["shown turned by \u221290\u00b0"] * turned)
 
@@ -158,76 +156,6 @@ def _joints(canvas: Canvas, drawn: Sequence[Contour], fit: Fit) -> None:
         canvas.dots(fit.place(points))
 
 
-def _edge_names(canvas: Canvas, pattern: FlatPattern, fit: Fit) -> None:
-    """Write name and length outside the middle of each edge; an edge of no length is an apex."""
-    size = float(norm(np.diff(corner_points(pattern), axis=0)[0]))
-    for name, edges in sides(pattern).items():
-        mm = side_length(edges)
-        middle = edges[len(edges) // 2]
-        t = np.array([0.5 if len(edges) % 2 else 0.0])
-        if mm <= size * NO_LENGTH:
-            apex = middle.at(t)[0]
-            _beside(canvas, fit.place(apex), fit.turn(_clear_of(pattern, apex)), f"{name}: apex", COLOURS[name])
-            continue
-        along = fit.turn(unit(middle.derivative(t))[0])
-        outward = np.array([along[1], -along[0]])
-        words = f"{name}  {length_text(mm)} mm"
-        place = fit.place(middle.at(t))[0]
-        if mm * fit.scale < LONG_ENOUGH:
-            _beside(canvas, place, outward, words, COLOURS[name])
-        else:
-            angle = upright(float(np.degrees(np.arctan2(along[1], along[0]))))
-            off = LABEL_GAP + _bulge(fit.place(middle.at(SPREAD)) - place, along, words)
-            canvas.text(place + off * outward, words, 9.0, COLOURS[name], angle_deg=angle, bold=True, on_white=True)
-
-
-def _clear_of(pattern: FlatPattern, apex: Vector2) -> Vector2:
-    """Return a direction in which there is room for the name of an apex: outward, or inward from a blunt one."""
-    first, last = (unit(corner - apex) for corner in _far_corners(pattern, apex))
-    inward = np.mean(corner_points(pattern), axis=0) - apex
-    return unit(inward if first @ last < BLUNT else -inward)
-
-
-def _far_corners(pattern: FlatPattern, apex: Vector2) -> Points2:
-    order = np.argsort(norm(pattern.corners - apex))
-    return pattern.corners[np.sort(order[-2:])]
-
-
-BLUNT = -0.5
-"""Cosine of the angle at an apex beyond which the names of start and end take the room outside."""
-
-NO_LENGTH = 1e-9
-"""An edge shorter than this share of the pattern is a point."""
-
-
-def _beside(canvas: Canvas, place: Vector2, outward: Vector2, words: str, colour: str) -> None:
-    """Write upright text next to a point, on the outer side."""
-    x, y = outward
-    align: tuple[HAlign, VAlign] = ("center", "bottom" if y > 0.0 else "top")
-    if abs(x) > abs(y) / 2.0:
-        align = ("left" if x > 0.0 else "right", "center")
-    canvas.text(place + 0.1 * outward, words, 9.0, colour, align, bold=True, on_white=True)
-
-
-SPREAD = np.linspace(0.0, 1.0, SAMPLES)
-LABEL_GAP = 0.16
-
-
-def _bulge(offsets: Points2, along: Vector2, words: str) -> float:
-    """Return how far a hollow edge rises above its tangent along a text, inches."""
-    beside = np.abs(offsets @ along) <= len(words) * ROOM_PER_SIGN / 1.7
-    return float((offsets[beside] @ np.array([along[1], -along[0]])).max(initial=0.0))
-
-
-HALF_TURN, QUARTER_TURN = 180.0, 90.0
-
-
-def upright(angle_deg: float) -> float:
-    """Return the angle, turned by half a turn where text would stand on its head, in (-90, 90] degrees."""
-    turned = QUARTER_TURN - (QUARTER_TURN - angle_deg) % HALF_TURN
-    return round(turned, 6)
-
-
 def _hole_names(canvas: Canvas, holes: Sequence[Contour], fit: Fit) -> None:
     """Write the size of each hole into it if there is room, else beside it."""
     for hole in holes[:MANY_HOLES]:
@@ -237,11 +165,7 @@ def _hole_names(canvas: Canvas, holes: Sequence[Contour], fit: Fit) -> None:
         words = hole_text(hole.path)
         room = ROOM_PER_SIGN * len(words)
         drop = 0.0 if width > room else float(np.abs(corners[1] - corners[0])[1]) / 2.0 + 0.1
-        canvas.text(corners.mean(axis=0) - np.array([0.0, drop]), words, 7.5)
-
-
-ROOM_PER_SIGN = 0.068
-"""Inches that one sign of 7.5 point type takes."""
+        canvas.text(corners.mean(axis=0) - np.array([0.0, drop]), words, 7.5, on_white=drop > 0.0)
 
 
 def _overall(canvas: Canvas, pattern: FlatPattern, fit: Fit) -> None:

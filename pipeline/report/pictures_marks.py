@@ -18,7 +18,7 @@ def draw_marks(canvas: Canvas, pattern: FlatPattern, fit: Fit) -> None:
     """Draw marks dashed, bend lines dash-dotted in a colour of their own, texts as they will be written."""
     for bends, colour, dashes in ((False, INK, MARK_DASHES), (True, PURPLE, BEND_DASHES)):
         paths = [mark.path for mark in pattern.marks if mark.layer.startswith("BEND") == bends]
-        canvas.lines([fit.place(_points(path, fit)) for path in paths], colour, 0.8, dashes)
+        canvas.lines([fit.place(mark_points(path, fit)) for path in paths], colour, 0.8, dashes)
     for text in pattern.texts:
         size = text.height_mm * fit.scale * POINTS_PER_INCH / CAPITAL
         if size >= LEAST_POINTS:
@@ -31,6 +31,11 @@ CAPITAL = 0.73
 """Height of capitals as a share of the type size."""
 
 
+def has_bends(pattern: FlatPattern) -> bool:
+    """Return whether bend lines are drawn: they lie along rulings, and both would be too many lines."""
+    return any(mark.layer.startswith("BEND") for mark in pattern.marks)
+
+
 def marks_legend(pattern: FlatPattern) -> list[str]:
     """Return what the lines mean, with their numbers."""
     bends = sum(mark.layer.startswith("BEND") for mark in pattern.marks)
@@ -39,7 +44,7 @@ def marks_legend(pattern: FlatPattern) -> list[str]:
     return [f"{how}: {count} {what}{'s' * (count > 1)}" for how, count, what in counts if count]
 
 
-def _points(path: ArcPath, fit: Fit) -> Points2:
+def mark_points(path: ArcPath, fit: Fit) -> Points2:
     """Return a path as points in mm, finer than can be seen."""
     points = arcpath.polygon(path, accuracy=fit.fine_mm)
     return np.vstack([points, points[:1]]) if path.closed else points

@@ -1,15 +1,15 @@
 """A surface by points on its rulings, and the direction from which it is best seen.
 
 Every ruling that is shown is one of the net's own, so that it can be drawn between quads.  The direction is chosen from
-a fixed list with z upright: the first that shows most of the area, but not face-on.  Parts of the surface that hide
-others are not considered.
+a fixed list with z upright: the first that shows most of the area, but not face-on, and how the edges are bent.  Parts
+of the surface that hide others are not considered.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import Array, Indices, Mask, Points3, Values, norm
+from stages.geometry.arrays import Array, Indices, Mask, Points3, Values, Vector3, norm
 from stages.model.surface import RuledSurface
 
 RULINGS = 24
@@ -99,18 +99,68 @@ FRONT_BONUS = 0.1
 """What seeing only the front side is worth, as a share of the area."""
 
 
+FORM_BONUS = 0.25
+"""What it is worth to see the hollow of an edge in full: how the sheet is bent shows in its edges."""
+
+
+HOLLOW = 0.05
+"""A bulge whose area is this share of the squared size counts in full."""
+
+
 def view_direction(shape: Net) -> Points3:
+    """Return the frame of the picture of a surface: of its quads, of how its edges bulge, of its length."""
+    return best_view(normals(shape)[shape.joined].reshape(-1, 3), hollows(shape), length(shape))
+
+
+def best_view(area: Points3, bulges: Points3 | None = None, long: Vector3 | None = None) -> Points3:
     """Return the frame of the picture, rows right, up and towards the viewer, shape (3, 3); z stays upright.
 
-    Of the directions tried, the first that shows most of the area (up to `SEEN_ENOUGH`), its front rather.
+    Of the directions tried, the first that shows most of the area (up to `SEEN_ENOUGH`), its front rather, most of the
+    bulge of one of the edges, and the length of what is long.
+
+    area: of each face, as a vector across it.  bulges: see `hollows`.  long: see `length`.
     """
-    area = normals(shape)[shape.joined].reshape(-1, 3)
     total = max(float(norm(area).sum()), np.finfo(float).tiny)
+    edges = np.zeros((1, 3)) if bulges is None else bulges
+    axis = np.zeros(3) if long is None else long
     seen = [
-        (round(_seen(area, frame[2], total), 2), frame)
+        (round(_seen(area, frame[2], total) + _form(edges, axis, frame), 2), frame)
         for frame in (frame_of(azimuth, elevation) for elevation in ELEVATIONS_DEG for azimuth in AZIMUTHS_DEG)
     ]
     return max(seen, key=lambda pair: pair[0])[1]
+
+
+def _form(edges: Points3, axis: Vector3, frame: Points3) -> float:
+    """Return what a view is worth for showing how the edges are bent, the length, and depth: not along x or y."""
+    bulge = float(np.abs(edges @ frame[2]).max())
+    shown = float(norm(frame[:2] @ axis))
+    square = float(np.abs(frame[0, :2]).min()) < LEAST_TURN
+    return FORM_BONUS * bulge + LENGTH_BONUS * shown - (SQUARE_ON if square else 0.0)
+
+
+LENGTH_BONUS = 0.3
+"""What it is worth to see something slender at its full length."""
+
+
+SQUARE_ON, LEAST_TURN = 0.03, 0.1
+"""What it costs to look along x or y, to within so many rad."""
+
+
+def length(shape: Net) -> Vector3:
+    """Return the direction of greatest extent, its length 1 for a needle and 0 for what is as wide as long."""
+    points = shape.points.reshape(-1, 3) - shape.points.mean(axis=(0, 1))
+    _, extent, axes = np.linalg.svd(points, full_matrices=False)
+    slender: Vector3 = axes[0] * (1.0 - extent[1] / max(float(extent[0]), np.finfo(float).tiny))
+    return slender
+
+
+def hollows(shape: Net) -> Points3:
+    """Return the vector areas between the edges c0, c1 and their chords, at most of length 1: how far they bulge."""
+    size = max(float(norm(np.ptp(shape.points, axis=(0, 1)))), np.finfo(float).tiny)
+    edges = shape.points[:, [0, -1]] - shape.points[:1, [0, -1]]
+    area = np.cross(edges[:-1], edges[1:]).sum(axis=0) / (2.0 * HOLLOW * size**2)
+    bulge: Points3 = area / np.maximum(norm(area), 1.0)[:, None]
+    return bulge
 
 
 def _seen(area: Array, towards: Array, total: float) -> float:

@@ -16,6 +16,7 @@ from pipeline.report.pictures_canvas import (
     LEFT,
     PALE,
     POINTS_PER_INCH,
+    PURPLE,
     Box,
     Canvas,
     Fit,
@@ -26,14 +27,19 @@ from pipeline.report.pictures_canvas import (
     shortened,
 )
 from pipeline.report.pictures_edges import corner_points
-from pipeline.report.pictures_flat import closed_polygon, compound, dimension, upright
+from pipeline.report.pictures_flat import closed_polygon, compound, dimension
+from pipeline.report.pictures_flat_names import upright
+from pipeline.report.pictures_marks import mark_points
 from stages.geometry.arrays import Array, Points2, Vector2, cross2
 from stages.geometry.rigid import Rigid2, apply, matrix
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Placement, SheetLayout
 
-FILLS = ("#BBD9EC", "#F6D7A8", "#BFE3D6", "#EBCFE0", "#F7F0A6", "#F3C2A5", "#D3D3D3", "#D2E9F8")
-"""Okabe-Ito's colours, lightened, in the order in which part names appear; they cycle."""
+FILLS = (
+    "#BBD9EC", "#F6D7A8", "#BFE3D6", "#EBCFE0", "#F7F0A6", "#F3C2A5", "#D3D3D3", "#D2E9F8",
+    "#CFE6A9", "#D8CCF0", "#E6D3B8", "#F5BFC8",
+)  # fmt: skip
+"""Okabe-Ito's colours, lightened, and four between them, in the order in which part names appear; they cycle."""
 
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 12.0, 5.4, 9.0
 MARGIN, HEAD, TABLE = 0.3, 0.85, 2.9
@@ -176,9 +182,23 @@ def _copies(canvas: Canvas, copies: Sequence[Placement], pattern: FlatPattern, f
     rings = [closed_polygon(contour.path, fit) for contour in (pattern.outer, *pattern.inner)]
     moved = [[fit.place(apply(placed.motion, ring)) for ring in rings] for placed in copies]
     canvas.areas([compound(one) for one in moved], fill, INK, 0.7)
+    _marks(canvas, copies, pattern, fit)
     rooms = {angle: _room(rings, pattern.label_at, angle) for angle in DIRECTIONS_DEG}
     for placed in copies:
         _label(canvas, placed, pattern, rooms, fit)
+
+
+def _marks(canvas: Canvas, copies: Sequence[Placement], pattern: FlatPattern, fit: Fit) -> None:
+    """Draw marks and bend lines thinly, as far as they are not too many to be told apart."""
+    if not 0 < len(copies) * len(pattern.marks) <= MANY_MARKS:
+        return
+    for bends, colour in ((False, INK), (True, PURPLE)):
+        lines = [mark_points(mark.path, fit) for mark in pattern.marks if mark.layer.startswith("BEND") == bends]
+        canvas.lines([fit.place(apply(placed.motion, line)) for placed in copies for line in lines], colour, 0.35)
+
+
+MANY_MARKS = 2000
+"""Lines of one part on one sheet: so many take half a second."""
 
 
 def _label(

@@ -29,6 +29,8 @@ from pipeline.report.pictures_canvas import (
     length_text,
     scale_bar,
 )
+from pipeline.report.pictures_features import Drawn
+from pipeline.report.pictures_names import write_names
 from pipeline.report.pictures_net import Net, normals
 from stages.geometry.arrays import Array, Indices, Points2, Points3, Values, norm, unit
 
@@ -48,7 +50,7 @@ EDGE_WIDTH, RULING_WIDTH, WORST_WIDTH, RIM_WIDTH, SEAM_WIDTH = 2.2, 0.5, 2.6, 0.
 
 @dataclass(frozen=True, slots=True)
 class Painting:
-    """Things to be painted: corners in the picture's frame (k, 2 or 4, 3), depth of each, fill, edge and width."""
+    """Things to be painted: corners in the picture's frame (k, any, 3), depth of each, fill, edge and width."""
 
     corners: Array
     depth: Values
@@ -57,8 +59,8 @@ class Painting:
     width: float
 
 
-def paintings(shape: Net, frame: Points3) -> list[Painting]:
-    """Return quads and lines in the frame of the picture, mm."""
+def paintings(shape: Net, frame: Points3, features: Sequence[Drawn] = ()) -> tuple[list[Painting], list[Painting]]:
+    """Return the faces with what is drawn on them, and the edges, in the frame of the picture, mm."""
     placed = shape.points @ frame.T
     turned = normals(shape) @ frame.T
     depth = (placed[1:, 1:, 2] + placed[:-1, :-1, 2] + placed[1:, :-1, 2] + placed[:-1, 1:, 2]) / 4.0
@@ -66,17 +68,37 @@ def paintings(shape: Net, frame: Points3) -> list[Painting]:
     near = _nearest(depth)
     along = np.concatenate([near[:1], np.maximum(near[1:], near[:-1]), near[-1:]])
     first, last = np.zeros(1, dtype=np.int64), np.full(1, shape.v.size - 1)
-    drawn = [
+    bent = any(one.colour == PURPLE for one in features)
+    faces = [
         _quads(shape, placed, turned, depth),
-        _across(placed, along, shape.rulings, GREY, RULING_WIDTH),
+        # bend lines lie along rulings: both would be too many lines
+        _across(placed, along, shape.rulings[:0] if bent else shape.rulings, GREY, RULING_WIDTH),
+        *(painting for one in features for painting in _feature(one, frame, near)),
         _across(placed, along + RIM_LIFT * np.ptp(placed[..., 2]), _rims(shape, turned), INK, RIM_WIDTH),
+    ]
+    edges = [
         _along(shape, placed[:, 0], near[:, 0], COLOURS["c0"]),
         _along(shape, placed[:, -1], near[:, -1], COLOURS["c1"]),
         _across(placed, along, last, COLOURS["end"], EDGE_WIDTH),
         _across(placed, along, first, COLOURS["start"], EDGE_WIDTH),
     ]
     worst = [] if shape.worst is None else [np.array([shape.worst])]
-    return drawn + [_across(placed, along, index, PURPLE, WORST_WIDTH) for index in worst]
+    return faces, edges + [_across(placed, along, index, PURPLE, WORST_WIDTH) for index in worst]
+
+
+def _feature(one: Drawn, frame: Points3, near: Array) -> list[Painting]:
+    """Return a line as pieces, each as near as the quads about it; a hole as a whole, as near as any quad in it."""
+    placed = one.points @ frame.T
+    rows, columns = (np.clip(one.places[:, k].astype(np.int64), 0, near.shape[k] - 1) for k in (0, 1))
+    pieces = np.stack([placed[:-1], placed[1:]], axis=1)
+    if not one.closed:
+        depth = near[rows, columns]
+        return [_lines(pieces, np.maximum(depth[:-1], depth[1:]), one.colour, one.width)]
+    # one quad more on all sides: lines that end at the hole are no nearer
+    nearest = near[max(rows.min() - 1, 0) : rows.max() + 2, max(columns.min() - 1, 0) : columns.max() + 2].max()
+    white = np.ones((1, 3))
+    hole = Painting(placed[None], np.array([nearest]), white, white, SEAM_WIDTH)
+    return [hole, _lines(pieces, np.full(len(pieces), nearest), one.colour, one.width)]
 
 
 def _nearest(depth: Array) -> Array:
@@ -144,14 +166,14 @@ MARGINS = (0.6, 0.8, 0.6, 0.7)
 """Around the surface for labels, axes and scale, inches: left, bottom, right, top."""
 
 
-def draw_surface(canvas: Canvas, box: Box, shape: Net, frame: Points3) -> None:
+def draw_surface(canvas: Canvas, box: Box, shape: Net, frame: Points3, features: Sequence[Drawn] = ()) -> None:
     """Draw the formed surface with the names of its edges, axes, scale and extent."""
     fit = fitted(outline_points(shape, frame), box.inset(*MARGINS))
-    drawn = paintings(shape, frame)
-    paint(canvas, drawn, fit)
-    _ghosts(canvas, drawn[3:], fit)
-    _names(canvas, shape, frame, fit)
-    _triad(canvas, np.array([box.left + 0.5, box.bottom + 0.42]), frame)
+    faces, edges = paintings(shape, frame, features)
+    paint(canvas, faces + edges, fit)
+    _ghosts(canvas, edges, fit)
+    write_names(canvas, shape, frame, fit, COLOURS)
+    triad(canvas, np.array([box.left + 0.5, box.bottom + 0.42]), frame)
     scale_bar(canvas, box.right - 0.3, box.bottom + 0.28, fit.scale, min(1.4, box.width / 4.0))
     extent = np.ptp(shape.points.reshape(-1, 3), axis=0)
     words = "   ".join(f"{axis} {length_text(mm)}" for axis, mm in zip("xyz", extent, strict=True))
@@ -168,38 +190,21 @@ def _ghosts(canvas: Canvas, edges: Sequence[Painting], fit: Fit) -> None:
             canvas.lines(pieces, to_hex(one.edge[0]), 0.8, alpha=0.35)
 
 
-def _names(canvas: Canvas, shape: Net, frame: Points3, fit: Fit) -> None:
-    """Write c0, c1, start, end and the worst ruling beside what they name."""
-    placed = shape.points @ frame.T
-    flat = fit.place(placed[..., :2])
-    thirds = np.arange(shape.v.size // 4, 3 * shape.v.size // 4 + 1)
-    for name, row, other in (("c0", 0, -1), ("c1", -1, 0)):
-        i = int(thirds[np.argmax(placed[thirds, row, 2])])
-        away = unit(flat[i, row] - flat[i, other])
-        canvas.text(flat[i, row] + 0.17 * away, name, 9.5, COLOURS[name], bold=True)
-    middle = flat.shape[1] // 3
-    near = max(shape.v.size // 12, 1)
-    seam = float(norm(shape.points[0] - shape.points[-1]).max()) <= SEAM * float(norm(np.ptp(placed, axis=(0, 1))))
-    ends = (("start = end", 0, near),) if seam else (("start", 0, near), ("end", -1, -1 - near))
-    for name, i, inner in ends:
-        away = unit(flat[i, middle] - flat[inner, middle])
-        canvas.text(flat[i, middle] + 0.25 * away, name, 9.0, COLOURS[name.split()[0]], bold=True, on_white=True)
-    if shape.worst is not None:
-        tip = flat[shape.worst, 0] + 0.42 * unit(flat[shape.worst, 0] - flat[shape.worst, -1])
-        words = f"worst ruling, v = {shape.v[shape.worst]:.4g}"
-        canvas.text(tip, words, 9.0, PURPLE, bold=True, on_white=True)
-
-
-SEAM = 1e-6
-"""First and last ruling are one seam if they are nearer than this share of the size."""
-
-
-def _triad(canvas: Canvas, origin: Points2, frame: Points3) -> None:
-    """Draw the axes; one that points at the viewer is a dot."""
+def triad(canvas: Canvas, origin: Points2, frame: Points3) -> None:
+    """Draw the axes; one that points at the viewer is a dot, and of names that would meet one steps aside."""
+    written: list[Points2] = []
     for axis, name in enumerate("xyz"):
         tip = 0.36 * frame[:2, axis]
         arrow(canvas, origin, origin + tip)
-        canvas.text(origin + tip + 0.1 * unit(tip), name, 8.5)
+        at = origin + tip + 0.1 * unit(tip)
+        if any(norm(at - other) < APART for other in written):
+            at = origin + tip + np.array([APART, 0.0])
+        written.append(at)
+        canvas.text(at, name, 8.5)
+
+
+APART = 0.14
+"""Between the names of two axes, inches."""
 
 
 def sight(shape: Net, frame: Points3) -> tuple[float, float]:

@@ -10,12 +10,18 @@ developable is not decided here: `verify` does that for every kind alike.
 import numpy as np
 
 from stages.construct.assemble import patches_of
+from stages.construct.faces import face_surface
 from stages.construct.features import placed
 from stages.construct.joins import join_metrics, join_rows, joins_of
+from stages.construct.meshes import mesh_surface
+from stages.construct.openings import main_opening
 from stages.construct.plates import plate
 from stages.geometry.planarity import is_planar
 from stages.geometry.ruled import RuledPatch, size_of
+from stages.model.ducts import MainOpening
+from stages.model.faces import FaceFile
 from stages.model.material import Part
+from stages.model.meshes import MeshFile
 from stages.model.part import Flat
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.surface import RuledSurface, Surface, whole_spans
@@ -28,6 +34,12 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
     """Return the surface of a part in mm, or None with the reason; lengths are exact to rounding."""
     if isinstance(part.spec.surface, Flat):
         return plate(part, part.spec.surface, tol)
+    if isinstance(part.spec.surface, MainOpening):
+        return main_opening(part, part.spec.surface.tee)
+    if isinstance(part.spec.surface, MeshFile):
+        return mesh_surface(part, part.spec.surface, tol)
+    if isinstance(part.spec.surface, FaceFile):
+        return face_surface(part, tol)
     built = patches_of(part.spec.surface, tol)
     size = size_of(built.patches) if built.patches else 0.0
     findings = [*built.findings, *_too_small(built.patches, size)]

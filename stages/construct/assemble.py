@@ -9,6 +9,7 @@ from stages.construct.apex import apex_findings
 from stages.construct.bezierpair import bezier_pair
 from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, largest_gap, ruled_patches
+from stages.construct.cutcone import cut_cone, cut_frustum
 from stages.construct.paper import paper_kind
 from stages.construct.pieces import strip_of
 from stages.construct.plain import cone_patches, cylinder_patches, directrix_of, frustum
@@ -20,6 +21,7 @@ from stages.construct.slope import slope
 from stages.construct.straps import strap
 from stages.construct.tangent import tangent_surface
 from stages.construct.transition import transition
+from stages.geometry.ruled import RuledPatch
 from stages.model.developables import BezierPair, Slope, Tangent
 from stages.model.ducts import Tee, Transition
 from stages.model.envelopes import Ribbon, Strap
@@ -45,7 +47,10 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances) -> Built:
             c0, c1 = chain(spec.c0), chain(spec.c1)
             return Built(ruled_patches(c0, c1), findings=(*_open("c0", c0, tol), *_open("c1", c1, tol)))
         case Cone() if spec.directrix is None:
-            return Built((frustum(spec),))
+            return Built((frustum(spec),)) if not _is_cut(spec) else _made(cut_frustum(spec, frustum(spec)))
+        case Cone() if _is_cut(spec):
+            link = directrix_of(spec)
+            return _joined("directrix", link, _made(cut_cone(spec, link.curves)), tol)
         case Cone():
             link = directrix_of(spec)
             patches = cone_patches(spec, link)
@@ -87,6 +92,14 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances) -> Built:
         case Strip():
             return strip_of([patches_of(piece, tol) for piece in spec.pieces], tol)
     raise ValueError(f"no construction for {type(spec).__name__}")
+
+
+def _is_cut(spec: Cone) -> bool:
+    return spec.start_plane is not None or spec.end_plane is not None
+
+
+def _made(made: tuple[tuple[RuledPatch, ...], tuple[Finding, ...]]) -> Built:
+    return Built(made[0], findings=made[1])
 
 
 def _joined(key: str, link: Chain, built: Built, tol: Tolerances) -> Built:

@@ -34,19 +34,19 @@ class Chain:
 def chain(spec: CurveSpec) -> Chain:
     """Return the curve of a job file as a chain."""
     if spec.bezier is not None:
-        return _even([bezier([in_space(point) for point in spec.bezier])])
+        return even([bezier([in_space(point) for point in spec.bezier])])
     if spec.bspline is not None:
         return bspline(spec.bspline)
     if spec.points is not None:
         return interpolated(np.array([floats(in_space(point)) for point in spec.points]))
     if spec.polyline is not None or spec.line is not None:
         points = spec.polyline or spec.line or ()
-        return _even([bezier([in_space(a), in_space(b)]) for a, b in pairwise(points)])
+        return even([bezier([in_space(a), in_space(b)]) for a, b in pairwise(points)])
     if spec.chain is not None:
         return _joined([chain(piece) for piece in spec.chain])
     if spec.file is not None:
         raise ValueError(f"the curves of {spec.file} were not loaded")
-    return _even([_turning(spec)])
+    return even([_turning(spec)])
 
 
 def _turning(spec: CurveSpec) -> Circular:
@@ -65,7 +65,7 @@ def in_space(point: Row) -> tuple[Fraction, Fraction, Fraction]:
     return point[0], point[1], point[2] if len(point) > len("xy") else Fraction(0)
 
 
-def _even(curves: Sequence[Curve]) -> Chain:
+def even(curves: Sequence[Curve]) -> Chain:
     """Return the chain in which every curve has an equal share of the parameter."""
     return Chain(tuple(curves), tuple(Fraction(i, len(curves)) for i in range(len(curves) + 1)))
 

@@ -107,7 +107,8 @@ def _placed(strip: Strip, name: str, spec: Feature) -> Placed:
             raise NoPlaceError("open-contour", "the curve does not close; on a seam it has no closed image")
         return Placed(name, spec, None, edges, distance)
     if isinstance(spec, NotchSpec):
-        return Placed(name, spec, _on_edge(strip, spec))
+        # the outline of a trimmed part is known where it is flat
+        return Placed(name, spec, None if spec.edge == "outline" else _on_edge(strip, spec))
     if isinstance(spec, RulingMarks):
         raise ValueError("marked rulings have no place of their own")
     place, distance = _place(strip, spec.at)

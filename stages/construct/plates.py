@@ -1,5 +1,7 @@
 """Plane parts: an outline and holes, taken as they are into the plane of the outline."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from stages.construct.curves import Chain, chain, largest_gap
@@ -20,8 +22,12 @@ from stages.model.tolerances import Tolerances
 def plate(part: Part, spec: Flat, tol: Tolerances) -> Outcome[Surface | None]:
     """Return the plate, or None where a contour is open, encloses nothing, or leaves the plane."""
     links = [chain(spec.outline), *(chain(hole) for hole in spec.holes)]
+    return laid(part, links, plane_of(links), tol)
+
+
+def laid(part: Part, links: Sequence[Chain], frame: PlaneFrame, tol: Tolerances) -> Outcome[Surface | None]:
+    """Return the plate with these contours, the outline first, in a plane."""
     findings = [finding for i, link in enumerate(links) for finding in _contour_findings(i, link, tol)]
-    frame = plane_of(links)
     metrics = (Metric("planar_error_mm", frame.off_mm, "mm", "sampled", tol.chord_mm),)
     planar = Metric("planar", frame.off_mm <= tol.chord_mm, "", "sampled")
     if findings:

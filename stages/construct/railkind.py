@@ -4,6 +4,7 @@ A refusal names the fold that no strip avoids (a lower bound, taken on two latti
 the fewest folds that there is.
 """
 
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
@@ -15,8 +16,9 @@ from stages.construct.rails import Piece, pieces, rows
 from stages.geometry.arrays import Values, norm
 from stages.geometry.extremum import maximum
 from stages.geometry.joins import join
+from stages.geometry.railbound import Bound
 from stages.geometry.railgraph import Rules
-from stages.geometry.railstrip import Rail, Strip, bounds, closed_strip, open_strip
+from stages.geometry.railstrip import Rail, Strip, bounds, closed_bounds, closed_strip, open_strip
 from stages.geometry.ruled import RuledPatch, curvature
 from stages.model.rails import Rails
 from stages.model.report import Finding
@@ -34,7 +36,10 @@ def rail_strip(spec: Rails, tol: Tolerances) -> Built:
     if closed[0] != closed[1]:
         return Built((), findings=(Finding("open-and-closed", "one rail is open and the other is closed", True),))
     fold = ANY_FOLD if spec.folds == "allow" else float(np.radians(float(spec.max_warp)))
-    found = best_strip(a.curves, b.curves, Rules(fold), closed=closed[0])
+    found = None
+    if spec.min_radius > 0:
+        found = best_strip(a.curves, b.curves, Rules(fold, cones=False), closed=closed[0])
+    found = found or best_strip(a.curves, b.curves, Rules(fold), closed=closed[0])
     if found is None:
         return Built((), findings=(_refusal(a.curves, b.curves, closed=closed[0]),))
     made = pieces(found)
@@ -46,7 +51,7 @@ def rail_strip(spec: Rails, tol: Tolerances) -> Built:
 def best_strip(rail_a: Rail, rail_b: Rail, rules: Rules, *, closed: bool) -> Strip | None:
     """Return a strip without folds if there is one, else the best that the rules allow."""
     search = closed_strip if closed else open_strip
-    smooth = search(rail_a, rail_b, Rules(0.0))
+    smooth = search(rail_a, rail_b, replace(rules, fold_rad=0.0))
     return search(rail_a, rail_b, rules) if smooth is None and rules.fold_rad > 0.0 else smooth
 
 
@@ -59,18 +64,22 @@ def _refusal(rail_a: Rail, rail_b: Rail, *, closed: bool) -> Finding:
     """Return why there is no strip: the fold that none avoids, its place, and what would help."""
     folded = best_strip(rail_a, rail_b, Rules(ANY_FOLD), closed=closed)
     least = f"; with folds the best strip has {_described(folded)}" if folded is not None else ""
-    if closed:
-        message = f"no tangent-continuous strip leads round between these rails{least}"
-        return Finding("no-smooth-strip", f'{message}: folds = "allow" makes it', True)
-    coarse, fine = bounds(rail_a, rail_b)
+    coarse, fine = (closed_bounds if closed else bounds)(rail_a, rail_b)
     if fine.fold_rad > 0.0:
         bound = f"every strip folds by at least {np.degrees(fine.fold_rad):.6g} deg somewhere"
         check = f"(lower bound; {np.degrees(coarse.fold_rad):.6g} deg on half the lattice)"
     else:
         bound, check = "none was found", "(no lower bound on its folds is known)"
-    help_ = f"trim or extend the rails at {_place(fine.t, fine.s, len(rail_a), len(rail_b))}"
+    help_ = _help(fine, rail_a, rail_b, closed=closed)
     message = f'no tangent-continuous strip: {bound} {check}{least}; {help_}, or set folds = "allow"'
     return Finding("no-smooth-strip", message, True, {"a": fine.t, "b": fine.s})
+
+
+def _help(at: Bound, rail_a: Rail, rail_b: Rail, *, closed: bool) -> str:
+    """Return what would help: open rails can be cut elsewhere, closed ones need another shape there."""
+    if closed:
+        return f"make the rails turn alike at a = {at.t:.3g}, b = {at.s:.3g}"
+    return f"trim or extend the rails at {_place(at.t, at.s, len(rail_a), len(rail_b))}"
 
 
 def _described(strip: Strip) -> str:

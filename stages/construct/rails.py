@@ -10,10 +10,13 @@ from fractions import Fraction
 
 import numpy as np
 
-from stages.geometry.arrays import Array
+from stages.geometry.arrays import Array, Values
 from stages.geometry.curves import Bezier, Curve, Difference, affine, blossom, exactly, restrict
+from stages.geometry.linked import both_rails
 from stages.geometry.planarity import is_planar
-from stages.geometry.railpath import TINY, Leg, linked
+from stages.geometry.railchords import SHARED
+from stages.geometry.railcorners import TINY, Leg
+from stages.geometry.railpath import linked
 from stages.geometry.railstrip import Rail, Strip, as_given
 from stages.geometry.ruled import RuledPatch
 
@@ -67,10 +70,35 @@ def _sort(patch: RuledPatch) -> str:
 
 
 def _ruled(knots: Array, rail_a: Rail, rail_b: Rail) -> Piece:
-    """Return the ruled piece over knots that lie in one piece of each rail."""
-    c0, c1 = (linked(knots, rail_a, rail_b, on_b=on_b) for on_b in (False, True))
+    """Return the ruled piece over knots that lie in one piece of each rail.
+
+    Where the rails meet at an end of it, it is built about that point and with parameters that begin there, so that a
+    ruling that shrinks to nothing keeps its digits.
+    """
     (t0, s0), (t1, s1) = knots[0], knots[-1]
-    return Piece("ruled", RuledPatch(c0, c1, Difference(c1, c0)), (float(t0), float(t1)), (float(s0), float(s1)))
+    i, j = np.floor(knots.mean(axis=0)).astype(int).tolist()
+    local, pair = knots - [i, j], (rail_a[i], rail_b[j])
+    first, last = (_meeting(rail_a, rail_b, corner) for corner in knots[[0, -1]])
+    meet = first or last or (Fraction(0),) * 3
+    near = [affine(curve, ONE, [-x for x in meet]) for curve in pair]
+    turned = first is None and last is not None
+    if turned:
+        local, near = 1.0 - local[::-1], [restrict(curve, *BACK) for curve in near]
+    c0, c1 = both_rails(linked(local, near[:1], near[1:]))
+    if turned:
+        c0, c1 = c0.part(*BACK), c1.part(*BACK)
+    patch = RuledPatch(c0.image(ONE, meet), c1.image(ONE, meet), Difference(c1, c0))
+    return Piece("ruled", patch, (float(t0), float(t1)), (float(s0), float(s1)))
+
+
+BACK = Fraction(1), Fraction(0)
+
+
+def _meeting(rail_a: Rail, rail_b: Rail, corner: Values) -> tuple[Fraction, ...] | None:
+    """Return the point of both rails at a corner, None where they have two."""
+    a, b = _point(rail_a, float(corner[0])), _point(rail_b, float(corner[1]))
+    gap = max(abs(float(x - y)) for x, y in zip(a, b, strict=True))
+    return a if gap <= SHARED * max(abs(float(x)) for x in (*a, 1)) else None
 
 
 def _parts(start: float, end: float, count: int) -> Iterator[tuple[int, Fraction, Fraction]]:

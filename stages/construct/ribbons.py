@@ -33,7 +33,11 @@ Pieces = list[tuple[Curve, Curve]]
 
 def ribbon(spec: Ribbon, link: Chain, tol: Tolerances) -> Built:
     """Return the patches of a ribbon, how wide its sides may be, or why there is none."""
-    normals = normal_chain(spec, link, tol)
+    return band(link, normal_chain(spec, link, tol), spec.sides)
+
+
+def band(link: Chain, normals: Chain, sides: tuple[float, float]) -> Built:
+    """Return the band along a chain under a chain of normals, its sides left and right, mm; or why there is none."""
     pieces = common_pieces(link, normals)
     curves, fields = [piece[0] for piece in pieces], [piece[1] for piece in pieces]
     stuck = stops("curve", curves)
@@ -43,7 +47,7 @@ def ribbon(spec: Ribbon, link: Chain, tol: Tolerances) -> Built:
     stuck = _leaning(lean) or _without_ruling(curves, fields)
     if stuck:
         return Built((), (lean,), stuck)
-    return _made(spec.sides, curves, [Conjugate(*piece) for piece in pieces], lean)
+    return _made(sides, curves, [Conjugate(*piece) for piece in pieces], lean)
 
 
 def _made(sides: tuple[float, float], curves: list[Curve], rulings: list[Conjugate], lean: Metric) -> Built:
@@ -64,6 +68,11 @@ def normal_chain(spec: Ribbon, link: Chain, tol: Tolerances) -> Chain:
     steps = len(given) - 1
     at = link.breaks if spec.curve.points is not None else tuple(Fraction(i, steps) for i in range(steps + 1))
     closed = bool(np.array_equal(given[0], given[-1])) and closed_chain(link) <= tol.join_mm
+    return normals_through(given, at, closed=closed)
+
+
+def normals_through(given: np.ndarray, at: tuple[Fraction, ...], *, closed: bool) -> Chain:
+    """Return the spline through unit normals, shape (n, 3), at these parameters of the curve, from 0 to 1."""
     return Chain(spline(given, floats(at), closed=closed).curves, at)
 
 

@@ -6,6 +6,8 @@
 An elbow lies in the xz plane: its axis begins at the origin along z and turns towards +x about (bend_radius, 0, 0).
 Gore k touches that arc at the bend angle 2 (k - 1) mitre, where its axis has the arc's direction; its ends are planes
 through the bend's own axis.  The gores lie where they are in the finished elbow, so that mating edges are one curve.
+
+A tee with its main's opening is the branch and a plate: the saddle of the one goes around the outline of the other.
 """
 
 from dataclasses import dataclass, replace
@@ -14,16 +16,20 @@ from math import cos, radians, sin
 
 from msgspec.structs import replace as with_fields
 
-from stages.model.curves import CurveSpec, EllipseSpec
-from stages.model.ducts import Elbow
+from stages.construct.faces import face_blanks
+from stages.construct.meshes import blanks
+from stages.model.curves import CurveSpec, EllipseSpec, Table
+from stages.model.ducts import Elbow, MainOpening, Tee, is_set
+from stages.model.faces import FaceFile
 from stages.model.material import Part
+from stages.model.meshes import MeshFile
 from stages.model.part import Cylinder, Plane
 from stages.model.scalars import Coordinate, Length, Number, coordinate
 
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """Edges of one blank, one after the other: of a ruled part c0, c1, start or end."""
+    """Edges of one blank, one after the other: of a ruled part c0, c1, start or end; of a plate the outline."""
 
     blank: str
     edges: tuple[str, ...]
@@ -39,20 +45,37 @@ class Seam:
 
 def parts_of(part: Part) -> tuple[Part, ...]:
     """Return the blanks that a part is made of."""
-    surface = part.spec.surface
-    if not isinstance(surface, Elbow):
+    if isinstance(part.spec.surface, MeshFile):
+        return blanks(part)
+    if isinstance(part.spec.surface, FaceFile):
+        return face_blanks(part)
+    if not is_set(part.spec.surface):
         return (part,)
-    made = [gore(surface, k) for k in range(surface.gores)]
-    return tuple(replace(part, spec=with_fields(part.spec.blank(n), surface=one)) for n, one in enumerate(made, 1))
+    return tuple(
+        replace(part, spec=with_fields(part.spec.blank(n), surface=one))
+        for n, one in enumerate(_blanks(part.spec.surface), 1)
+    )
+
+
+def _blanks(surface: Table) -> tuple[Table, ...]:
+    """Return the surfaces of the blanks of a set."""
+    match surface:
+        case Elbow():
+            return tuple(gore(surface, k) for k in range(surface.gores))
+        case Tee():
+            return with_fields(surface, hole=False), MainOpening(tee=surface)
+    raise ValueError(f"no set of blanks for {type(surface).__name__}")
 
 
 def seams_of(part: Part) -> tuple[Seam, ...]:
     """Return the seams between the blanks of a part."""
     surface, name = part.spec.surface, part.name
-    if not isinstance(surface, Elbow):
+    if not is_set(surface):
         return ()
-    pairs = ((f"{name}.{n}", f"{name}.{n + 1}") for n in range(1, surface.gores))
-    return tuple(Seam(Edges(one, ("c1",)), Edges(other, ("c0",))) for one, other in pairs)
+    if isinstance(surface, Elbow):
+        pairs = ((f"{name}.{n}", f"{name}.{n + 1}") for n in range(1, surface.gores))
+        return tuple(Seam(Edges(one, ("c1",)), Edges(other, ("c0",))) for one, other in pairs)
+    return (Seam(Edges(f"{name}.1", ("c1",)), Edges(f"{name}.2", ("outline",))),)
 
 
 def gore(elbow: Elbow, k: int) -> Cylinder:

@@ -34,6 +34,9 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 """An array of whole numbers whose shape the docstring gives."""
 
+Whole = NDArray[np.int64]
+"""An array of int64 whose shape the docstring gives."""
+
 EPS = float(np.finfo(np.float64).eps)
 """Spacing of the doubles at 1: 2.2e-16."""
 

@@ -54,7 +54,7 @@ class Rectifying(ArrayValue):
 
     def image(self, matrix: Rows, shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
-        return Image(self, _rounded(matrix), _vector(shift))
+        return image(self, matrix, shift)
 
     def part(self, low: Fraction, high: Fraction) -> Curve:
         """Return the part over [low, high]."""
@@ -81,7 +81,7 @@ class Conjugate(ArrayValue):
 
     def image(self, matrix: Rows, shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
-        return Image(self, _rounded(matrix), _vector(shift))
+        return image(self, matrix, shift)
 
     def part(self, low: Fraction, high: Fraction) -> Curve:
         """Return the part over [low, high]."""
@@ -110,7 +110,7 @@ class Beside(ArrayValue):
 
     def image(self, matrix: Rows, shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
-        return Image(self, _rounded(matrix), _vector(shift))
+        return image(self, matrix, shift)
 
     def part(self, low: Fraction, high: Fraction) -> Curve:
         """Return the part over [low, high]."""
@@ -139,6 +139,11 @@ class Image(ArrayValue):
     def part(self, low: Fraction, high: Fraction) -> Curve:
         """Return the part over [low, high]."""
         return Image(restrict(self.curve, low, high), self.matrix, self.shift)
+
+
+def image(curve: Curve, matrix: Rows, shift: Sequence[Fraction]) -> Image:
+    """Return matrix @ curve + shift, by the values of the curve."""
+    return Image(curve, _rounded(matrix), _vector(shift))
 
 
 def _rounded(matrix: Rows) -> Matrix:

@@ -116,6 +116,17 @@ def offset(patch: RuledPatch, distance_mm: float, normal: Curve | None = None) -
     return RuledPatch(Offset(patch.c0, field, distance_mm), Offset(patch.c1, field, distance_mm), patch.p)
 
 
+def tapered(patch: RuledPatch, distance_mm: float, normal: Curve, kept: float) -> RuledPatch:
+    """Return the patch with the edge u = `kept`, 0 or 1, where it is and the other moved by a distance along `normal`.
+
+    Developable where the kept edge is the apex of a cone, or the patch is a plane: a cone over the moved edge, a plane
+    turned a little.  Rulings of the length L become sqrt(L^2 + distance^2).
+    """
+    if kept == 0.0:
+        return RuledPatch(patch.c0, Offset(patch.c1, normal, distance_mm), Offset(patch.p, normal, distance_mm))
+    return RuledPatch(Offset(patch.c0, normal, distance_mm), patch.c1, Offset(patch.p, normal, -distance_mm))
+
+
 def normals(patch: RuledPatch) -> Curve:
     """Return the unit normals along the patch, with their limits where p x S_v vanishes at an end."""
     polynomial = _polynomial_normal(patch)

@@ -22,7 +22,7 @@ import numpy as np
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import EPS, Array, ArrayValue, Points2, Points3, Values, Vector2, Vector3, dot, norm
 from stages.geometry.curves import Curve
-from stages.geometry.strip import Strip, divided, jet, rulings, size
+from stages.geometry.strip import Jet, Strip, divided, jet, rulings, size
 
 FIRST_CELLS = 64
 """Intervals of v per patch to begin with."""
@@ -178,7 +178,7 @@ class PulledBack(ArrayValue):
         x, x_d1 = self.curve.jet(t, 1)
         found = jet(self.strip, place[:, 0], place[:, 1])
         right = np.stack([dot(x_d1, found.s_u), dot(x_d1, found.s_v)], axis=1)
-        return divided(_hessian(self.strip, place, x), right)
+        return divided(_hessian(found, x), right)
 
 
 def pulled_back(strip: Strip, curve: Curve, count: int) -> PulledBack:
@@ -193,6 +193,20 @@ def pulled_back(strip: Strip, curve: Curve, count: int) -> PulledBack:
     reached = norm(jet(strip, table[:, 0], table[:, 1]).s - every)
     for i in np.flatnonzero((moved > SETTLED) | (reached > distance + SAME**2 * size(strip))):
         table[i] = nearest(strip, every[i]).place
+    return PulledBack(strip, curve, _unseamed(strip, _over_seam(strip, every, table)))
+
+
+def lying_on(strip: Strip, curve: Curve, count: int, *, within_mm: float) -> PulledBack:
+    """Return a curve that is known to lie on the strip, to within a distance, as a curve of u and v.
+
+    Newton's method is enough where it arrives on the surface; only what it does not find is sought by `nearest`.
+    """
+    every = curve.jet(np.linspace(0.0, 1.0, count + 1), 0)[0]
+    start, distance = _by_rulings(strip, every)
+    table = _over_seam(strip, every, _newton(strip, every, start)[0])
+    off = norm(jet(strip, table[:, 0], table[:, 1]).s - every)
+    for i in np.flatnonzero((off > within_mm) & (off > distance)):
+        table[i] = nearest(strip, every[i]).place
     return PulledBack(strip, curve, _unseamed(strip, table))
 
 
@@ -204,6 +218,23 @@ def _by_rulings(strip: Strip, every: Points3) -> tuple[Points2, Values]:
     best = [int(np.argmin(distance)) for _, distance in found]
     places = [(u[i], v[i]) for (u, _), i in zip(found, best, strict=True)]
     return np.array(places), np.array([distance[i] for (_, distance), i in zip(found, best, strict=True)])
+
+
+def _over_seam(strip: Strip, every: Points3, table: Points2) -> Points2:
+    """Return the places with those at an end of the strip sought from its other end as well, where that is nearer.
+
+    Beside a seam the nearest of many rulings may be the one beyond it, from which Newton's method finds no way back.
+    """
+    first, last = strip.knots[0], strip.knots[-1]
+    at_end = np.flatnonzero(np.minimum(table[:, 1] - first, last - table[:, 1]) <= SAME * (last - first))
+    if not at_end.size:
+        return table
+    here, points_there = table[at_end], every[at_end]
+    there, _ = _newton(strip, points_there, np.stack([here[:, 0], first + last - here[:, 1]], axis=1))
+    off, off_there = (norm(jet(strip, *places.T).s - points_there) for places in (here, there))
+    fresh = table.copy()
+    fresh[at_end] = np.where((off_there < off - SAME * size(strip))[:, None], there, here)
+    return fresh
 
 
 def _unseamed(strip: Strip, table: Points2) -> Points2:
@@ -240,7 +271,8 @@ def _newton(strip: Strip, x: Points3, place: Points2) -> tuple[Points2, Values]:
     low, high = np.array([0.0, strip.knots[0]]), np.array([1.0, strip.knots[-1]])
     moved = np.zeros(len(place))
     for _ in range(MOST_STEPS):
-        fresh = np.clip(place - divided(_hessian(strip, place, x), _gradient(strip, place, x)), low, high)
+        found = jet(strip, place[:, 0], place[:, 1])
+        fresh = np.clip(place - divided(_hessian(found, x), _gradient(found, x)), low, high)
         moved, place = np.abs(fresh - place).max(axis=1), fresh
         if (moved <= SETTLED).all():
             break
@@ -252,15 +284,13 @@ SETTLED = 1e-11
 """After a step of this length in u and v the next one would be its square, which is rounding."""
 
 
-def _gradient(strip: Strip, place: Points2, x: Points3) -> Points2:
-    found = jet(strip, place[:, 0], place[:, 1])
+def _gradient(found: Jet, x: Points3) -> Points2:
     off = found.s - x
     return np.stack([dot(off, found.s_u), dot(off, found.s_v)], axis=1)
 
 
-def _hessian(strip: Strip, place: Points2, x: Points3) -> Array:
-    """Return the second derivatives of half the squared distance, shape (n, 2, 2)."""
-    found = jet(strip, place[:, 0], place[:, 1])
+def _hessian(found: Jet, x: Points3) -> Array:
+    """Return the second derivatives of half the squared distance of places from points, shape (n, 2, 2)."""
     off = found.s - x
     mixed = dot(found.s_u, found.s_v) + dot(off, found.s_uv)
     twice_v = dot(found.s_v, found.s_v) + dot(off, found.s_vv)

@@ -5,7 +5,7 @@ another it folds by the warp of that ruling.  A strip begins on the line t = 0 o
 its first and last turns lie on these.  Each cell, and each edge of the border, gets a lower bound of the warp on it: 0
 beside an open zero, else the least of its corners less what a smooth function can dip between them (an eighth of its
 second differences each way, taken twice).  The largest bound passed at a turn is then made as small as can be over all
-paths, by dynamic programming.
+paths, by dynamic programming.  Round closed rails a path may begin anywhere and ends there.
 
 Second differences are sampled: the bound is no proof where the rails wriggle between lattice lines.  Taken again on
 twice as many lines it must not fall.
@@ -37,10 +37,10 @@ class _Costs:
     """
 
     cells: Array
-    first_a: Values
-    last_a: Values
-    first_b: Values
-    last_b: Values
+    first_a: Array
+    last_a: Array
+    first_b: Array
+    last_b: Array
     aside_a: float
     aside_b: float
 
@@ -55,6 +55,26 @@ def least_fold(found: Field, every: Zeros) -> Bound:
     every_cost[-1, 0], every_cost[0, -1] = costs.aside_a, costs.aside_b
     i, j = np.unravel_index(int(np.argmin(np.abs(every_cost - value))), every_cost.shape)
     return Bound(value, _at(found.a.value, int(i)), _at(found.b.value, int(j)))
+
+
+def least_fold_round(found: Field, every: Zeros) -> Bound:
+    """Return the lower bound of the largest fold on any strip that leads once round closed rails.
+
+    Such a strip passes the first line of rail a in some interval of rail b and comes round to it in the same: every
+    interval is begun in, and where in it the path begins and ends need not agree.
+    """
+    cells = _costs(found, every).cells
+    round_ = cells.T[(np.arange(cells.shape[1])[:, None] + np.arange(cells.shape[1] + 1)) % cells.shape[1]]
+    # along the axes: where the path begins, how many intervals of b it has passed, and the interval of a
+    on_a = np.zeros(cells.T.shape)
+    on_b = round_[:, 0].copy()
+    on_b[:, 0] = 0.0
+    for column in np.moveaxis(round_[:, 1:], 1, 0):
+        on_a = np.minimum.accumulate(np.maximum(on_b, column), axis=1)
+        on_b = np.minimum(on_b, np.maximum(on_a, column))
+    value = float(np.minimum(on_a[:, -1], on_b[:, -1]).min())
+    i, j = np.unravel_index(int(np.argmin(np.abs(cells - value))), cells.shape)
+    return Bound(value, _at(found.a.value, int(i) + 1), _at(found.b.value, int(j) + 1))
 
 
 def _at(lines: Values, k: int) -> float:

@@ -15,16 +15,20 @@ Junctions are lattice places: a path that needs a corner between two lines is fo
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Literal
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from stages.geometry.arrays import Indices, Values
-from stages.geometry.railzero import Field, Lines, Place, Zeros, chords
+from stages.geometry.arrays import Array
+from stages.geometry.railchords import chords, from_shared_ends, met
+from stages.geometry.railzero import Field, Lines, Place, Zeros, angles
 
 Move = Literal["along", "on_a", "on_b"]
+CONES: tuple[Move, ...] = ("on_a", "on_b")
+MOVES: tuple[Move, ...] = ("along", *CONES)
 State = tuple[Place, Move]
 """A place of the lattice (a zero, or ("corner", i, j)) and the move one is in there."""
 
@@ -47,10 +51,14 @@ class Rules:
     """What a strip may do: fold by at most `fold_rad`.
 
     beside: whether lattice corners beside an open zero stand for an exact one, which may turn out not to be there.
+    cones: whether cones may bend; else only plane triangles have an apex on a rail.
+    meeting: whether an arc may begin or end where the rails meet: its rulings shrink to a point there.
     """
 
     fold_rad: float = 0.0
     beside: bool = True
+    cones: bool = True
+    meeting: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,48 +89,68 @@ class _Graph:
     def add(self, start: State, end: State, cost: float) -> None:
         """Add an edge unless its cost is infinite."""
         if cost < np.inf:
-            ends = [self.number.setdefault(state, len(self.number)) for state in (start, end)]
-            self.edges.append((ends[0], ends[1], cost + STEP))
+            number = self.number
+            tail = number.setdefault(start, len(number))
+            self.edges.append((tail, number.setdefault(end, len(number)), cost + STEP))
 
 
 def way(found: Field, every: Zeros, rules: Rules) -> Way:
     """Return the cheapest way from the first ruling to the last that keeps the rules."""
     graph = _Graph()
-    for start, end in (*chords(found, every), *_over_breaks(found, every)):
-        graph.add((start, "along"), (end, "along"), STEP)
+    ends = from_shared_ends(found, every) if rules.meeting else ()
+    for first, second in (*chords(found, every), *met(every), *ends):
+        graph.add((first, "along"), (second, "along"), STEP)
     corners = _corners(found, every, rules)
     for place, cost in corners.items():
         graph.add((place, "on_a"), (place, "on_b"), cost)
         graph.add((place, "on_b"), (place, "on_a"), cost)
+    kinks = _over_both_breaks(found, rules)
+    for (start, end), cost in kinks.items():
+        graph.add(start, end, cost)
     used = [place for place in every if every[place].open]
     for place in used:
         move: Move = "on_b" if place[0] == "column" else "on_a"
         graph.add((place, "along"), (place, move), START)
         graph.add((place, move), (place, "along"), START)
-    at = {place: where(found, every, place) for place in (*used, *corners)}
+    both = [place for pair in kinks for place, _ in pair]
+    at = {place: where(found, every, place) for place in (*used, *corners, *both)}
     _add_cones(graph, found, at, "on_a", rules)
     _add_cones(graph, found, at, "on_b", rules)
     path, cost = _shortest(graph, found.F.shape)
-    folded = {place for place, price in corners.items() if price >= FOLD}
-    return Way(tuple(Stop(move, *where(found, every, place), place in folded) for place, move in path), cost)
+    if not path:
+        return Way((), cost)
+    folded = {(place, place) for place, price in corners.items() if price >= FOLD}
+    folded |= {(start[0], end[0]) for (start, end), price in kinks.items() if price >= FOLD}
+    following = [*(place for place, _ in path[1:]), None]
+    stops = (
+        Stop(move, *where(found, every, place), (place, after) in folded)
+        for (place, move), after in zip(path, following, strict=True)
+    )
+    return Way(tuple(stops), cost)
 
 
-def _over_breaks(found: Field, every: Zeros) -> list[tuple[Place, Place]]:
-    """Return the zeros on the two lines of a break at which an arc goes on: a break without a kink."""
-    pairs = []
-    for place, zero in every.items():
-        kind, i, j = place
-        after: Place = (kind, i + 1, j) if kind == "column" else (kind, i, j + 1)
-        inside = found.a.inside if kind == "column" else found.b.inside
-        line = i if kind == "column" else j
-        if line < inside.size and not inside[line] and after in every and zero.open and every[after].open:
-            apart = abs(every[after].t - zero.t) + abs(every[after].s - zero.s)
-            pairs += [(place, after)] if apart <= ONE_PLACE else []
-    return pairs
+def _over_both_breaks(found: Field, rules: Rules) -> dict[tuple[State, State], float]:
+    """Return the steps over a break of either rail at once, as between the corners of two frames, with their costs."""
+    a, b = found.a, found.b
+    steps: dict[tuple[State, State], float] = {}
+    for i in _kinks(a):
+        for j in _kinks(b):
+            p = b.point[j] - a.point[i]
+            before = {"on_a": np.cross(p, a.slope[i]), "on_b": np.cross(p, b.slope[j])}
+            after = {"on_a": np.cross(p, a.slope[i + 1]), "on_b": np.cross(p, b.slope[j + 1])}
+            for first, second in product(CONES, CONES):
+                fold = float(angles(before[first], after[second]))
+                if fold <= max(rules.fold_rad, SMOOTH):
+                    price = START if fold <= SMOOTH else FOLD + float(np.degrees(fold))
+                    steps[(("corner", i, j), first), (("corner", i + 1, j + 1), second)] = price
+    return steps
 
 
-ONE_PLACE = 1e-9
-"""Zeros on both sides of a break are one if they are this close: tangents equal to rounding, over a flat crossing."""
+def _kinks(of: Lines) -> list[int]:
+    """Return the lines before breaks at which the tangent turns."""
+    breaks = np.nonzero(~of.inside)[0]
+    kinks: list[int] = breaks[angles(of.slope[breaks], of.slope[breaks + 1]) > SMOOTH].tolist()
+    return kinks
 
 
 def _corners(found: Field, every: Zeros, rules: Rules) -> dict[Place, float]:
@@ -175,7 +203,7 @@ def _add_cones(graph: _Graph, found: Field, at: Mapping[Place, tuple[float, floa
     """Add the cones between places that follow each other at one parameter of the fixed rail; a break has one."""
     turning_on_b = move == "on_b"
     fixed, moving = (found.a, found.b) if turning_on_b else (found.b, found.a)
-    turns = found.turn_b if turning_on_b else found.turn_a.T
+    costs = _costs(found.turn_b if turning_on_b else found.turn_a.T, moving, rules)
     lanes: dict[float, list[tuple[float, int, int, Place]]] = {}
     for place, (t, s) in at.items():
         kind, i, j = place
@@ -184,7 +212,7 @@ def _add_cones(graph: _Graph, found: Field, at: Mapping[Place, tuple[float, floa
             lanes.setdefault(round(rests, DIGITS), []).append((round(x, DIGITS), line, below, place))
     line_at = {round(float(value), DIGITS): k for k, value in enumerate(fixed.value)}
     for rests, lane in lanes.items():
-        _add_lane(graph, sorted(lane), _Costs.of(turns[line_at[rests]], moving, rules), move)
+        _add_lane(graph, sorted(lane), costs[line_at[rests]], move)
 
 
 DIGITS = 12
@@ -195,31 +223,36 @@ DIGITS = 12
 class _Costs:
     """Costs of a cone up to each line, and in how many intervals it has done what the rules forbid."""
 
-    value: Values
-    cost: Values
-    barred: Indices
-
-    @classmethod
-    def of(cls, turn: Values, moving: Lines, rules: Rules) -> "_Costs":
-        fold = ~moving.inside & (turn > SMOOTH)
-        cone = np.where(moving.inside, CONE * np.degrees(turn), 0.0)
-        step = np.where(fold, FOLD + np.degrees(turn), cone)
-        barred = fold & (turn > rules.fold_rad)
-        return cls(moving.value, np.append(0.0, np.cumsum(step)), np.append(0, np.cumsum(barred)))
+    value: list[float]
+    cost: list[float]
+    barred: list[int]
 
     def up_to(self, x: float, line: int) -> float:
         """Return the cost up to x, on the line or in the interval above it."""
-        above = min(line + 1, self.value.size - 1)
+        above = min(line + 1, len(self.value) - 1)
         width = self.value[above] - self.value[line]
         share = (x - self.value[line]) / width if width > 0.0 else 0.0
-        return float(self.cost[line] + share * (self.cost[above] - self.cost[line]))
+        return self.cost[line] + share * (self.cost[above] - self.cost[line])
+
+
+def _costs(turns: Array, moving: Lines, rules: Rules) -> list[_Costs]:
+    """Return the costs of the cones along every line of the rail at rest, by how they turn from line to line."""
+    inside = moving.inside
+    fold = ~inside & (turns > SMOOTH)
+    step = np.where(fold, FOLD + np.degrees(turns), np.where(inside, CONE * np.degrees(turns), 0.0))
+    bent = inside & (turns > SMOOTH) if not rules.cones else np.zeros_like(fold)
+    barred = np.cumsum(bent | (fold & (turns > rules.fold_rad)), axis=1)
+    cost = np.cumsum(step, axis=1)
+    value, none = moving.value.tolist(), np.zeros((len(turns), 1))
+    rows = zip(np.hstack([none, cost]).tolist(), np.hstack([none, barred]).astype(int).tolist(), strict=True)
+    return [_Costs(value, *row) for row in rows]
 
 
 def _add_lane(graph: _Graph, lane: Sequence[tuple[float, int, int, Place]], costs: _Costs, move: Move) -> None:
     """Add the cones along one lane, each from a place to the next, but not over what the rules forbid."""
     before: tuple[Place, float, int] | None = None
     for x, _, below, place in lane:
-        here, barred = costs.up_to(x, below), int(costs.barred[below])
+        here, barred = costs.up_to(x, below), costs.barred[below]
         if before is not None and barred == before[2]:
             graph.add((before[0], move), (place, move), max(here - before[1], 0.0))
         before = place, here, barred
@@ -237,7 +270,7 @@ def _shortest(graph: _Graph, shape: tuple[int, ...]) -> tuple[list[State], float
     n, m = shape
     states = list(graph.number)
     starts, ends = (
-        [graph.number[state] for state in ((corner, "on_a"), (corner, "on_b")) if state in graph.number]
+        [graph.number[corner, move] for move in MOVES if (corner, move) in graph.number]
         for corner in (("corner", 0, 0), ("corner", n - 1, m - 1))
     )
     if not (starts and ends):

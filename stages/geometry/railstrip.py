@@ -14,9 +14,12 @@ import numpy as np
 
 from stages.errors import NoSolutionError
 from stages.geometry.curves import Curve, restrict
-from stages.geometry.railbound import Bound, least_fold
+from stages.geometry.railbound import Bound, least_fold, least_fold_round
+from stages.geometry.railchords import shares_an_end
+from stages.geometry.railcorners import TINY, Leg
+from stages.geometry.railfold import smallest_folds
 from stages.geometry.railgraph import Rules, way
-from stages.geometry.railpath import TINY, Leg, legs, solved
+from stages.geometry.railpath import legs, solved
 from stages.geometry.railzero import Field, Zeros, field, zeros
 from stages.geometry.roots import chord_zeros
 
@@ -29,6 +32,8 @@ SEAMS = 4
 """Lattice lines of each rail on which seams are looked for."""
 MOST_SEAMS = 6
 """Seams that are tried."""
+BREAKS = 4
+"""Breaks of rail b that are tried as the seam where folds are allowed: any way to turn a frame over a frame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +53,17 @@ class Strip:
 def open_strip(rail_a: Rail, rail_b: Rail, rules: Rules, count: int = LINES) -> Strip | None:
     """Return the best strip between the rails as they run; None if there is none.
 
+    Where rails meet at an end, one that does not shrink to a point there is taken before one that does.
+    """
+    found = _on_lattices(rail_a, rail_b, rules, count)
+    if found is None and shares_an_end(rail_a, rail_b):
+        return _on_lattices(rail_a, rail_b, replace(rules, meeting=True), count)
+    return found
+
+
+def _on_lattices(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Strip | None:
+    """Return the best strip that the rules allow.
+
     Corners that the lattice promised and that are not there are looked for on twice as many lines, then done without.
     """
     for lines, beside in ((count, True), (2 * count, True), (count, False)):
@@ -56,7 +72,8 @@ def open_strip(rail_a: Rail, rail_b: Rail, rules: Rules, count: int = LINES) -> 
         if not best.stops:
             return None
         try:
-            return Strip(solved(legs(best.stops), rail_a, rail_b), rail_a, rail_b)
+            made = solved(legs(best.stops), rail_a, rail_b)
+            return Strip(smallest_folds(made, rail_a, rail_b), rail_a, rail_b)
         except NoSolutionError:
             continue
     return None
@@ -70,7 +87,9 @@ def closed_strip(rail_a: Rail, rail_b: Rail, rules: Rules) -> Strip | None:
         other = backwards(rail_b) if is_backwards else rail_b
         found = open_strip(turned(rail_a, t), turned(other, s), rules)
         if found is not None:
-            return _from_corner(replace(found, starts=(t, s), backwards_b=is_backwards), rail_a, other, rules)
+            strip = replace(found, starts=(t, s), backwards_b=is_backwards)
+            # a seam on a fold is one fold less: it stays
+            return strip if rules.fold_rad > 0.0 else _from_corner(strip, rail_a, other, rules)
     return None
 
 
@@ -118,7 +137,12 @@ def _priced(rail_a: Rail, rail_b: Rail, rules: Rules) -> list[tuple[float, tuple
 
 
 def _seams(found: Field, every: Zeros, rules: Rules) -> Iterator[tuple[float, float]]:
-    """Yield pairs of parameters to begin at: open zeros on evenly spread lines of either rail, in turn."""
+    """Yield pairs of parameters to begin at: open zeros on evenly spread lines of either rail, in turn.
+
+    Where folds are allowed, those from a's first point to the breaks of b come first.
+    """
+    if rules.fold_rad > 0.0:
+        yield from ((0.0, float(s)) for s in range(min(len(found.b.pieces), BREAKS)))
     lanes: dict[tuple[str, int], list[tuple[float, float]]] = {}
     for (kind, i, j), zero in sorted(every.items()):
         if zero.open:
@@ -130,8 +154,6 @@ def _seams(found: Field, every: Zeros, rules: Rules) -> Iterator[tuple[float, fl
     ]
     for lane in sorted((lane for lane in chosen if lane), key=len):
         yield from lane
-    if rules.fold_rad > 0.0:
-        yield 0.0, 0.0
 
 
 def turned(rail: Rail, start: float) -> Rail:
@@ -154,3 +176,21 @@ def bounds(rail_a: Rail, rail_b: Rail, count: int = LINES) -> Sequence[Bound]:
     """Return the lower bound of the largest fold of open rails, on the lattice and on one twice as fine."""
     fields = (field(rail_a, rail_b, lines) for lines in (count, 2 * count))
     return [least_fold(found, zeros(found)) for found in fields]
+
+
+def closed_bounds(rail_a: Rail, rail_b: Rail, count: int = SEAM_LINES) -> Sequence[Bound]:
+    """Return the lower bound of the largest fold round closed rails, on the lattice and on one twice as fine.
+
+    The least of both senses of rail b; its place is on rail b as given.
+    """
+    found = []
+    for lines in (count, 2 * count):
+        same, other = (_round(rail_a, rail, lines) for rail in (rail_b, backwards(rail_b)))
+        other = replace(other, s=len(rail_b) - other.s)
+        found.append(min(same, other, key=lambda bound: bound.fold_rad))
+    return found
+
+
+def _round(rail_a: Rail, rail_b: Rail, lines: int) -> Bound:
+    found = field(rail_a, rail_b, lines)
+    return least_fold_round(found, zeros(found, chord_zeros))

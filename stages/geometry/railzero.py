@@ -2,9 +2,8 @@
 
 F(t, s) = det(r', c - r, c') for rails r(t) and c(s), each a chain of smooth pieces.  F is sampled where lattice lines
 cross; between two crossings of unlike sign a zero is found to rounding.  A zero counts if both end normals look the
-same way, (p x r') . (p x c') > 0: else the edge of regression lies between the rails.  Inside a cell of the lattice
-zeros on its sides are joined by chords; a chord is kept if both parameters rise along it, which is where the arc is a
-ruled developable.  At a kink a rail has two lattice lines, one for the tangent on either side.
+same way, (p x r') . (p x c') > 0: else the edge of regression lies between the rails.  At a kink a rail has two lattice
+lines, one for the tangent on either side.
 
 Two arcs, or both ends of a loop, that enter and leave one side of a cell are not seen: the lattice is the resolution.
 """
@@ -102,13 +101,12 @@ def field(rail_a: Sequence[Curve], rail_b: Sequence[Curve], count: int) -> Field
 
 def angles(x: Array, y: Array) -> Array:
     """Return the angles between vectors along the last axis, rad; 0 where one has no length."""
-    found: Array = np.arctan2(norm(np.cross(x, y)), dot(x, y))
-    return found
+    return np.asarray(np.arctan2(norm(np.cross(x, y)), dot(x, y)))
 
 
 Place = tuple[str, int, int]
-"""A zero on the lattice: ("column", i, j) on line i of rail a between the lines j and j + 1 of b, ("row", i, j) on line
-j of rail b between the lines i and i + 1 of a."""
+"""A corner of the lattice ("corner", i, j), or a zero on it: ("column", i, j) on line i of rail a between the lines j
+and j + 1 of b, ("row", i, j) on line j of rail b between the lines i and i + 1 of a."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,10 +145,11 @@ def _crossings(fixed: Lines, other: Lines, at: Indices, below: Indices, finder: 
     F does not change when the rails are exchanged.
     """
     values, is_open = np.zeros(at.size), np.zeros(at.size, dtype=bool)
+    pieces = other.piece[below]
     for number, curve in enumerate(other.pieces):
-        chosen = np.nonzero(other.piece[below] == number)[0]
+        chosen = np.nonzero(pieces == number)[0]
         x, d, k = fixed.point[at[chosen]], fixed.slope[at[chosen]], below[chosen]
-        local = finder(partial(_mismatch_at, curve, x, d), other.local(k), other.local(k + 1))
+        local = finder(partial(_chosen, curve, x, d), other.local(k), other.local(k + 1))
         found = curve.jet(local, 1)
         arm = found[0] - x
         values[chosen] = number + local
@@ -158,75 +157,13 @@ def _crossings(fixed: Lines, other: Lines, at: Indices, below: Indices, finder: 
     return values, is_open
 
 
-def _mismatch_at(curve: Curve, x: Array, d: Array, v: Values, which: Indices) -> Values:
+def _chosen(curve: Curve, x: Array, d: Array, v: Values, which: Indices) -> Values:
     """Return F between a curve at v and some of the points x with slopes d."""
-    return _mismatch(curve, x[which], d[which], v)
+    return mismatch_at(curve, x[which], d[which], v)
 
 
-def _mismatch(curve: Curve, x: Points3, d: Points3, v: Values) -> Values:
+def mismatch_at(curve: Curve, x: Points3, d: Points3, v: Values) -> Values:
     """Return F between a curve at v and points x with slopes d, mm3."""
     found = curve.jet(v, 1)
     triple: Values = dot(np.cross(d, found[0] - x), found[1])
     return triple
-
-
-Chord = tuple[Place, Place]
-"""Two zeros in one cell, in the order in which both parameters rise."""
-
-
-def chords(found: Field, every: Zeros) -> list[Chord]:
-    """Return the chords of the arcs along which both parameters rise and both zeros are open."""
-    pairs = (pair for cell in _cells(found, every) for pair in _joined(found, every, cell))
-    rising = (_rising(every, pair) for pair in pairs)
-    return [pair for pair in rising if pair is not None]
-
-
-Cell = tuple[int, int]
-
-
-def _cells(found: Field, every: Zeros) -> list[Cell]:
-    """Return the cells with a zero on a side, by their lowest lines."""
-    n, m = found.F.shape
-    beside = {
-        (i - back, j) if kind == "column" else (i, j - back) for kind, i, j in every for back in (0, 1)
-    }  # fmt: skip
-    inside_a, inside_b = found.a.inside, found.b.inside
-    return sorted((i, j) for i, j in beside if 0 <= i < n - 1 and 0 <= j < m - 1 and inside_a[i] and inside_b[j])
-
-
-def _joined(found: Field, every: Zeros, cell: Cell) -> list[Chord]:
-    """Return which zeros on the sides of a cell belong to one arc; of four, the sign in the middle decides."""
-    i, j = cell
-    left, right, low, high = ("column", i, j), ("column", i + 1, j), ("row", i, j), ("row", i, j + 1)
-    there = [side for side in (left, low, right, high) if side in every]
-    if len(there) == len("ab"):
-        return [(there[0], there[1])]
-    if len(there) < len("abcd"):
-        return []
-    if (_middle(found, cell) >= 0.0) == (found.F[i, j] >= 0.0):
-        return [(left, high), (low, right)]
-    return [(left, low), (right, high)]
-
-
-def _middle(found: Field, cell: Cell) -> float:
-    """Return F in the middle of a cell."""
-    i, j = cell
-    a, b = found.a, found.b
-    t, s = (float(line.value[k : k + 2].mean() - line.piece[k]) for line, k in ((a, i), (b, j)))
-    r = a.pieces[a.piece[i]].jet(np.array([t]), 1)
-    return float(_mismatch(b.pieces[b.piece[j]], r[0], r[1], np.array([s]))[0])
-
-
-def _rising(every: Zeros, chord: Chord) -> Chord | None:
-    """Return the chord in rising order, or None."""
-    first, second = (every[place] for place in chord)
-    if not (first.open and second.open):
-        return None
-    t, s = second.t - first.t, second.s - first.s
-    if min(t, s) >= -SAME and max(t, s) > 0.0:
-        return chord
-    return (chord[1], chord[0]) if max(t, s) <= SAME else None
-
-
-SAME = 1e-13
-"""Parameters closer than this are one: zeros are found to rounding, and a level arc must not seem to fall."""

@@ -92,7 +92,7 @@ def _runs(points: Points2, at: Numbers) -> list[Numbers]:
 def _smooth(points: Points2, run: Numbers, accuracy: float) -> tuple[Numbers, list[_Piece]]:
     """Return the edges of one run between two corners, and the run, which begins elsewhere if it is closed."""
     closed = run[0] == run[-1]
-    if closed and (ring := _circle(points[run[:-1]], accuracy)) is not None:
+    if closed and (ring := _circle(points[run], accuracy)) is not None:
         return run, [_Piece(0, len(run) - 1, ring)]
     known = _stretches(points[run], accuracy)
     if closed and not known:
@@ -136,6 +136,8 @@ def _stretches(points: Points2, accuracy: float) -> list[_Piece]:
     while at < last:
         straight = _farthest(points, at, accuracy, _is_straight, LEAST_STRAIGHT)
         curved = _farthest(points, at, accuracy, _is_round, LEAST_ROUND)
+        if curved > straight and abs(_arc(points[at : curved + 1]).sweep_rad) < LEAST_SWEEP:
+            curved = at
         end = max(straight, curved)
         if end > at:
             edge: PlaneCurve = Segment(points[at], points[end]) if straight == end else _arc(points[at : end + 1])
@@ -174,17 +176,16 @@ def _is_straight(points: Points2, accuracy: float) -> bool:
 
 
 def _is_round(points: Points2, accuracy: float) -> bool:
-    """Return whether the points lie on one circle, in order, and turn enough to say so."""
+    """Return whether the points lie on one circle."""
     arc = _arc(points)
-    off = np.abs(norm(points - arc.centre) - arc.radius).max()
-    return bool(off <= accuracy) and abs(arc.sweep_rad) >= LEAST_SWEEP
+    return bool(np.abs(norm(points - arc.centre) - arc.radius).max() <= accuracy)
 
 
 def _circle(points: Points2, accuracy: float) -> CircularArc | None:
-    """Return the full circle that a closed run is, or None."""
-    if len(points) < LEAST_ROUND:
+    """Return the full circle that a closed run is, its first point repeated at the end, or None."""
+    if len(points) <= LEAST_ROUND:
         return None
-    arc = _arc(points)
+    arc = _free_arc(points)
     if float(np.abs(norm(points - arc.centre) - arc.radius).max()) > accuracy:
         return None
     return CircularArc(arc.centre, arc.radius, arc.start_rad, tau if arc.sweep_rad > 0.0 else -tau)

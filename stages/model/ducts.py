@@ -95,6 +95,7 @@ class Tee(Table, frozen=True, kw_only=True, tag_field="kind", tag="tee"):
 
     branch, main: diameters.  angle: between the axes.  offset: of the branch's axis, along y.
     length: along the branch's axis, from the main's.  The branch's seam is at its shortest ruling.
+    hole: the main's opening as a second blank, a template that is laid around the main: `<part>.1` is the branch then.
     """
 
     branch: Length
@@ -102,6 +103,7 @@ class Tee(Table, frozen=True, kw_only=True, tag_field="kind", tag="tee"):
     length: Length
     angle: Angle = field(default_factory=lambda: Angle(RIGHT_ANGLE))
     offset: Length = field(default_factory=Length)
+    hole: bool = False
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield sizes that make no tee."""
@@ -109,6 +111,12 @@ class Tee(Table, frozen=True, kw_only=True, tag_field="kind", tag="tee"):
         yield from _crossing_angle(self.angle)
 
 
+class MainOpening(Table, frozen=True, kw_only=True, tag_field="kind", tag="main-opening"):
+    """The second blank of a tee, made from it and not a kind of its own in a job file."""
+
+    tee: Tee
+
+
 def is_set(surface: Table) -> bool:
     """Return whether a surface takes several blanks, `<part>.<n>`."""
-    return isinstance(surface, Elbow)
+    return isinstance(surface, Elbow) or (isinstance(surface, Tee) and surface.hole)

@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass, field
 
+from stages.geometry.mesh import Mesh
+from stages.model.cadface import CadBody
 from stages.model.kfactor import KFactor
 from stages.model.part import PartSpec
 from stages.model.process import Process
+from stages.model.report import Finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +31,17 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part as asked for, its material, and how it is cut: what the stages start from."""
+    """A part as asked for, its material, and how it is cut: what the stages start from.
+
+    body: what the file holds that the part is described by, in mm; None: the specification says it all.
+    remarks: what was found out about that file before construct.
+    """
 
     spec: PartSpec
     material: Material = Material()
     process: Process = field(default_factory=Process)
+    body: Mesh | CadBody | None = None
+    remarks: tuple[Finding, ...] = ()
 
     @property
     def name(self) -> str:

@@ -4,7 +4,8 @@ One class per kind of surface; `SurfaceSpec` is their union, told apart by the k
 those of the job file.  The paper's patches are in `stages.model.quintics`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from typing import Annotated, Literal, get_args
 
 from msgspec import Meta, field
@@ -15,8 +16,10 @@ from stages.model.developables import BezierPair, Slope, Tangent
 from stages.model.ducts import Elbow, Saddle, Tee, Transition, is_set
 from stages.model.envelopes import Ribbon, Strap
 from stages.model.face import Face
+from stages.model.faces import FaceFile
 from stages.model.features import HoleSpec, MarkSpec, NotchSpec, feature_troubles
 from stages.model.forming import BendSpec
+from stages.model.meshes import MeshFile
 from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled, bad_fraction
 from stages.model.quinticstrip import QuinticStrip
 from stages.model.rails import Rails
@@ -43,8 +46,34 @@ class Flat(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat"):
     holes: tuple[CurveSpec, ...] = ()
 
 
+class Plane(Table, frozen=True, kw_only=True):
+    """A plane by a point and a normal."""
+
+    point: Point
+    normal: Direction
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield a normal of length 0."""
+        if is_zero(self.normal):
+            yield Trouble("normal", "the vector has length 0", "give the direction across the plane")
+
+    def height_of(self, point: Sequence[Fraction] | None) -> Fraction | None:
+        """Return how far a point lies along the normal, in its lengths, exactly; None for no point."""
+        if point is None:
+            return None
+        return sum((Fraction(n * (x - p)) for n, x, p in zip(self.normal, point, self.point, strict=True)), Fraction(0))
+
+    def is_same(self, other: "Plane") -> bool:
+        """Return whether another plane is the same one, exactly."""
+        (a, b, c), (x, y, z) = self.normal, other.normal
+        return self.height_of(other.point) == 0 and (b * z, c * x, a * y) == (c * y, a * z, b * x)
+
+
 class Cone(Table, frozen=True, kw_only=True, tag_field="kind", tag="cone"):
-    """A cone over any directrix, or a right frustum (axis z, radius0 at z = 0, seam at +x)."""
+    """A cone over any directrix, or a right frustum (axis z, radius0 at z = 0, seam at +x).
+
+    start_plane, end_plane: the rulings begin or end on a plane instead, within or beyond those ends.
+    """
 
     apex: Point | None = None
     directrix: CurveSpec | None = None
@@ -53,6 +82,8 @@ class Cone(Table, frozen=True, kw_only=True, tag_field="kind", tag="cone"):
     radius1: Length | None = None
     height: Length | None = None
     sweep: Angle = field(default_factory=lambda: Angle(360))
+    start_plane: Plane | None = None
+    end_plane: Plane | None = None
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield a mixture of the two ways to describe a cone, and values that make none."""
@@ -69,6 +100,29 @@ class Cone(Table, frozen=True, kw_only=True, tag_field="kind", tag="cone"):
             yield from plane_curves(self, "directrix")
         if len(frustum) == len(("radius0", "radius1", "height")):
             yield from self._frustum_troubles()
+        yield from self._plane_troubles()
+
+    def _plane_troubles(self) -> Iterator[Trouble]:
+        for i, (key, plane) in enumerate((("start_plane", self.start_plane), ("end_plane", self.end_plane))):
+            if plane is None or is_zero(plane.normal):
+                continue
+            if self.fraction[i] != i:
+                yield Trouble(f"fraction[{i}]", f"beside {key}", "the rulings end on one of them: leave the other out")
+            if plane.height_of(self._apex()) == 0:
+                hint = "move it, or leave it out: uncut rulings run to the apex"
+                yield Trouble(f"{key}.point", "the plane passes through the apex", hint)
+            if self.radius0 is not None and self.radius0 == self.radius1 and plane.normal[2] == 0:
+                yield Trouble(f"{key}.normal", "the plane is parallel to the axis", "the rulings never meet it")
+        if self.start_plane and self.end_plane and self.start_plane.is_same(self.end_plane):
+            yield Trouble("end_plane", "the same plane as start_plane", "the surface would have no area")
+
+    def _apex(self) -> Sequence[Fraction] | None:
+        """Return the apex, exactly; that of a frustum by its radii, None for equal ones."""
+        if self.radius0 is None or self.radius1 is None or self.height is None:
+            return self.apex
+        if self.radius0 == self.radius1:
+            return None
+        return Fraction(0), Fraction(0), Fraction(self.radius0 * self.height / (self.radius0 - self.radius1))
 
     def _frustum_troubles(self) -> Iterator[Trouble]:
         radii = (self.radius0 or 0, self.radius1 or 0)
@@ -83,18 +137,6 @@ class Cone(Table, frozen=True, kw_only=True, tag_field="kind", tag="cone"):
             yield Trouble("height", f"{float(self.height or 0):g} mm", "the height may not be negative")
         if not 0 < self.sweep <= Angle(360):
             yield Trouble("sweep", f"{float(self.sweep):g} deg", "above 0 and at most 360 deg")
-
-
-class Plane(Table, frozen=True, kw_only=True):
-    """A plane by a point and a normal."""
-
-    point: Point
-    normal: Direction
-
-    def troubles(self) -> Iterator[Trouble]:
-        """Yield a normal of length 0."""
-        if is_zero(self.normal):
-            yield Trouble("normal", "the vector has length 0", "give the direction across the plane")
 
 
 class Cylinder(Table, frozen=True, kw_only=True, tag_field="kind", tag="cylinder"):
@@ -139,7 +181,7 @@ class Strip(Table, frozen=True, kw_only=True, tag_field="kind", tag="strip"):
     pieces: Annotated[tuple[PieceSpec, ...], Meta(min_length=1)]
 
 
-SurfaceSpec = PieceSpec | Strip | Flat | Elbow | Tee
+SurfaceSpec = PieceSpec | Strip | Flat | Elbow | Tee | FaceFile | MeshFile
 KINDS: tuple[type[Table], ...] = get_args(SurfaceSpec)
 
 
@@ -171,6 +213,11 @@ class PartSpec(Table, frozen=True, kw_only=True):
             yield Trouble("cut", "a plate has no rulings to be divided along", 'leave it out, or write "none"')
         if self.bend and isinstance(self.surface, Flat):
             yield Trouble("bend", "a plate does not bend", "leave it out")
+        for key in ("hole", "mark", "notch", "bend") if isinstance(self.surface, MeshFile) else ():
+            if getattr(self, key):
+                yield Trouble(key, "a mesh has no u and v to place it by", "leave it out, or give the part by a kind")
+        if self.cut == "auto" and isinstance(self.surface, MeshFile):
+            yield Trouble("cut", "a mesh is cut along its seam", 'leave it out, or write "none"')
         if len(self.bend) > 1:
             yield Trouble("bend[1]", "a second set of bend lines", "a part is bent in one way: leave one of them out")
         for key in ("hole", "mark", "notch") if is_set(self.surface) else ():

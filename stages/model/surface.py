@@ -3,7 +3,10 @@
 from dataclasses import dataclass
 from fractions import Fraction
 
-from stages.geometry.arrays import ArrayValue, Vector2
+from stages.geometry.arrays import ArrayValue, Numbers, Vector2
+from stages.geometry.mesh import Mesh
+from stages.geometry.meshflat import MeshMap
+from stages.geometry.meshnearest import OnMesh
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.ruled import RuledPatch
 from stages.model.features import Feature
@@ -19,6 +22,7 @@ class Placed(ArrayValue):
 
     at: its place, if it has one.  curve: its curve otherwise, as smooth pieces end to end.
     distance_mm: how far from the surface, at most, it was given; None where it was given on the surface.
+    on_mesh: on a mesh, instead of both: its place, or the points of its smooth pieces end to end.
     """
 
     name: str
@@ -26,6 +30,19 @@ class Placed(ArrayValue):
     at: Vector2 | None = None
     curve: tuple[PlaneCurve, ...] = ()
     distance_mm: float | None = None
+    on_mesh: tuple[OnMesh, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Trim:
+    """The outline of a part that lies inside its patches instead of filling them: closed loops of smooth curves.
+
+    Each curve is an edge in the plane of u and the part's v (its numbers not mm), ending where the next one begins; the
+    last one ends where the first begins.  Which way round a loop runs does not count.  u may leave [0, 1] by rounding.
+    """
+
+    outer: tuple[PlaneCurve, ...]
+    inner: tuple[tuple[PlaneCurve, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +53,8 @@ class RuledSurface:
     spans: the range of the part's v that each patch covers: [i, i + 1] on patch i unless the part has been divided.
     features: what is cut into it and drawn on it, by the part's v: on the whole part, also where this is a piece of it.
     divided: whether this is one blank of a part that was divided.
+    trim: its outline and holes, where they are not the four edges of the strip.
+    tangencies: the part's v of the rulings where faces that were drawn one by one go over into each other.
     """
 
     part: Part
@@ -44,6 +63,8 @@ class RuledSurface:
     spans: tuple[Span, ...]
     features: tuple[Placed, ...] = ()
     divided: bool = False
+    trim: Trim | None = None
+    tangencies: tuple[float, ...] = ()
 
     def v_of(self, piece: int, local: float) -> float:
         """Return the part's v at the place `local` in [0, 1] of a patch."""
@@ -67,13 +88,35 @@ class Plate:
     features: tuple[Placed, ...] = ()
 
 
-Surface = RuledSurface | Plate
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshSurface:
+    """Triangles that make one disc, which may have holes; all of them run alike.
+
+    loops: the vertices of its boundary loops, the surface on their left: the outer one, then the holes.
+    seams: both sides of every cut that made it a disc, vertex by vertex and congruent, from one end to the other.
+    size_mm: the diagonal of the bounding box.
+    features: what is cut into it and drawn on it.
+    """
+
+    part: Part
+    mesh: Mesh
+    loops: tuple[Numbers, ...]
+    size_mm: float
+    seams: tuple[tuple[Numbers, Numbers], ...] = ()
+    features: tuple[Placed, ...] = ()
+
+
+Surface = RuledSurface | Plate | MeshSurface
 
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """What verify found: the surface itself, its class, and whether that is proved.  Only `verify` makes one."""
+    """What verify found: the surface itself, its class, and whether that is proved.  Only `verify` makes one.
+
+    flat: of a mesh, the map into the plane on which its class was judged.
+    """
 
     surface: Surface
     reached: Class
     proved: bool
+    flat: MeshMap | None = None

@@ -14,25 +14,28 @@ from dataclasses import dataclass, field
 
 from stages.geometry import arcpath
 from stages.geometry.arrays import Points2
-from stages.geometry.cover import doubled
 from stages.geometry.development import develop
 from stages.geometry.flatmap import Development
 from stages.geometry.relaxed import relaxed
-from stages.model.pattern import Contour, FlatPattern, Mark
-from stages.model.report import Finding, Metric, Outcome, StageReport
-from stages.model.surface import Certificate, Plate, RuledSurface
-from stages.model.tolerances import CLASSES, STRAIN_LIMIT, Class, Tolerances, class_by_strain
+from stages.model.pattern import FlatPattern, Mark
+from stages.model.report import Metric, Outcome, StageReport
+from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface
+from stages.model.tolerances import CLASSES, Class, Tolerances, class_by_strain
 from stages.unroll import outline
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.divide import division
 from stages.unroll.features import Features, on_strip
-from stages.unroll.forming import formed
+from stages.unroll.forming import folded, formed
+from stages.unroll.limits import overlap, overlap_findings, strain_findings
+from stages.unroll.meshes import flatten_mesh
 from stages.unroll.plates import flatten, rotations
 from stages.unroll.rolls import rolled
 from stages.unroll.sensitivity import sensitivity
 from stages.unroll.sides import surface_figures
 from stages.unroll.strain import as_detail, strain_field
+from stages.unroll.tangencies import tangency_marks
 from stages.unroll.thickness import Neutral, neutral
+from stages.unroll.trimmed import Trimmed, box, on_the_part, trimmed, with_trim
 
 __all__ = ["unroll"]
 
@@ -47,6 +50,8 @@ def unroll(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPattern | N
     """
     if isinstance(certificate.surface, Plate):
         return flatten(certificate.surface, tol)
+    if isinstance(certificate.surface, MeshSurface):
+        return flatten_mesh(certificate, tol)
     surface = certificate.surface
     sheet = neutral(surface, tol)
     if any(finding.fatal for finding in sheet.findings):
@@ -89,36 +94,43 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     """Return the pattern of the neutral surface, with everything that is cut into it and drawn on it."""
     surface, name = sheet.surface, sheet.surface.part.name
     laid = _laid(surface, by_warp)
-    outer = outline.contour(outline.edges(laid.development), tol.chord_mm, name)
     found = measure(surface, laid.development, tol)
-    covered = _overlap(outer)
-    made = on_strip(surface, laid.development, outer)
+    cut = trimmed(sheet, laid.development, surface.trim, tol.chord_mm) if surface.trim is not None else None
+    outer = cut.outer if cut is not None else outline.contour(outline.edges(laid.development), tol.chord_mm, name)
+    covered = overlap(outer)
+    made = on_strip(surface, laid.development, outer, cut.inner if cut is not None else ())
     bends = [formed(sheet.bent, surface, laid.development, spec) for spec in surface.part.spec.bend]
+    bends = bends or [folded(sheet.bent, surface, laid.development)]
     rolls = rolled(sheet.bent)
     strain = next(metric for metric in found.metrics if metric.name == "max_strain")
-    metrics = (*found.metrics, covered, *laid.metrics, *sheet.metrics, *made.metrics, *rolls.metrics)
+    measured = found.metrics if cut is None else with_trim(found.metrics, cut)
+    metrics = (*measured, covered, *laid.metrics, *sheet.metrics, *made.metrics, *rolls.metrics)
     metrics = (*metrics, *(metric for bend in bends for metric in bend.metrics))
     findings = (
         *division(surface),
         *sheet.findings,
-        *_strain_findings(strain, by_warp, tol),
-        *_overlap_findings(covered),
+        *strain_findings(strain, by_warp, tol),
+        *overlap_findings(covered, DIVIDE if cut is None else DIVIDE_BEFORE),
         *made.findings,
         *(finding for bend in bends for finding in bend.findings),
         *rolls.findings,
     )
-    corners = outline.corners(laid.development)
-    detail = {"class": _class(strain, by_warp)} | _figures(corners, made, found) | laid.detail | sheet.detail
+    corners = outline.corners(laid.development) if cut is None else box(outer)
+    detail = {"class": _class(strain, by_warp)} | _figures(corners, made, found, cut) | laid.detail | sheet.detail
     detail |= {"bends": [row for bend in bends for row in bend.rows], "rolls": list(rolls.rows)}
-    detail |= {"given": _given(sheet), "sensitivity": sensitivity(sheet.bent)}
+    detail |= {"given": _given(sheet, cut), "sensitivity": sensitivity(sheet.bent)}
     report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
-    return Outcome(_pattern(surface, made, [mark for bend in bends for mark in bend.marks], corners, tol), report)
+    marks = (*made.marks, *(mark for bend in bends for mark in bend.marks))
+    marks = (*marks, *tangency_marks(surface, laid.development))
+    if cut is not None:
+        marks = on_the_part(marks, made.outer, made.inner)
+    return Outcome(_pattern(surface, made, marks, corners, tol), report)
 
 
 def _pattern(
-    surface: RuledSurface, made: Features, bends: list[Mark], corners: Points2, tol: Tolerances
+    surface: RuledSurface, made: Features, marks: tuple[Mark, ...], corners: Points2, tol: Tolerances
 ) -> FlatPattern:
     spec, material = surface.part.spec, surface.part.material
     return FlatPattern(
@@ -126,7 +138,7 @@ def _pattern(
         quantity=spec.quantity,
         outer=made.outer,
         inner=made.inner,
-        marks=(*made.marks, *bends),
+        marks=marks,
         texts=made.texts,
         label_at=outline.label_place(made.outer.path, tuple(hole.path for hole in made.inner), tol.chord_mm),
         corners=corners,
@@ -142,68 +154,37 @@ def _class(strain: Metric, by_warp: Class) -> str:
     return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
 
 
-def _strain_findings(strain: Metric, by_warp: Class, tol: Tolerances) -> tuple[Finding, ...]:
-    """Refuse a part whose strain is of a worse class than the job accepts."""
-    if strain.passed:
-        return ()
-    value = float(strain.value or 0.0)
-    message = (
-        f"flattening strains the sheet by {value:.3g}, allowed {STRAIN_LIMIT[tol.accept]:g} "
-        f"(accept = {tol.accept!r}); by warp it is {by_warp!r}, by strain {class_by_strain(value) or 'no class'!r}"
-    )
-    return (Finding("strain", message, True, strain.where),)
+DIVIDE = 'along a ruling with cut = "auto"'
+DIVIDE_BEFORE = "before it is given: an outline of its own is not divided here"
 
 
-def _overlap(outer: Contour) -> Metric:
-    """Return the area that the pattern covers twice: proved where the lines and arcs that are cut cover none.
-
-    Where edges meet at almost no angle, arcs fitted to them cross by less than the chord: what goes away on finer arcs
-    (as chord^1.5, where two edges part like a parabola) is not the pattern's own.
-    """
-    allowed = outer.chord_mm**2
-    covered = doubled(outer.path)
-    if covered == 0.0:
-        return Metric("overlap_mm2", 0.0, "mm2", "proved", allowed)
-    for times in FINER:
-        if covered > allowed:
-            covered = min(covered, doubled(outline.contour(outer.edges, outer.chord_mm / times).path))
-    return Metric("overlap_mm2", covered, "mm2", "sampled", allowed)
-
-
-FINER = 4.0, 16.0
-"""How many times as fine the arcs are on which an overlap is looked at again."""
-
-
-def _overlap_findings(covered: Metric) -> tuple[Finding, ...]:
-    """Refuse a pattern that cannot be cut from one sheet."""
-    if covered.passed:
-        return ()
-    message = f'the flat pattern covers {covered.value:.4g} mm2 twice: divide the part along a ruling with cut = "auto"'
-    return (Finding("flat-overlap", message, fatal=True),)
-
-
-def _figures(corners: Points2, made: Features, found: Distortion) -> dict[str, object]:
-    """Return the figures of both sides, and of the flat pattern alone."""
+def _figures(corners: Points2, made: Features, found: Distortion, cut: Trimmed | None) -> dict[str, object]:
+    """Return the figures of both sides, and of the flat pattern alone; the edges of a trimmed part have no names."""
+    edges = (found.surface.by_name(), found.flat.by_name()) if cut is None else (None, None)
+    areas = (found.surface_area, found.flat_area) if cut is None else (cut.surface_area, cut.flat_area)
+    length = sum(found.flat.by_name().values()) if cut is None else cut.outline_length
     low_x, low_y, high_x, high_y = arcpath.bounds(made.outer.path)
     return {
-        "surface": {"area": found.surface_area, "edges": found.surface.by_name()},
+        "surface": {"area": areas[0], "edges": edges[0]},
         "flat": {
-            "area": found.flat_area,
-            "outline_length": sum(found.flat.by_name().values()),
+            "area": areas[1],
+            "outline_length": length,
             "width": high_x - low_x,
             "height": high_y - low_y,
             "corners": corners.tolist(),
-            "edges": found.flat.by_name(),
+            "edges": edges[1],
             "marks": made.mark_rows,
             "holes": made.hole_rows,
         },
     }
 
 
-def _given(sheet: Neutral) -> dict[str, object] | None:
+def _given(sheet: Neutral, cut: Trimmed | None) -> dict[str, object] | None:
     """Return the figures of the surface as given, where another one, the neutral surface, is unrolled."""
     given = sheet.bent.surface
     if given is sheet.surface:
         return None
+    if cut is not None:
+        return {"area": cut.given_area, "edges": None}
     edges, area = surface_figures(given.patches)
     return {"area": area, "edges": edges.by_name()}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import Array, Values
+from stages.geometry.arrays import Array, Values, Vector2
 from stages.geometry.tightest import Tight
 from stages.geometry.turning import Turning, is_fold, rates
 from stages.model.material import Material
@@ -21,12 +21,20 @@ STRAIGHT = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Bent:
-    """A part as given: surface, turning, sheet (of no thickness where that is not known), and the K used for it."""
+    """A part as given: surface, turning, sheet (of no thickness where that is not known), and the K used for it.
+
+    kept: u of the edge that the unrolled surface shares with the given one, its apexes (`stages.unroll.apexes`).
+    """
 
     surface: RuledSurface
     bends: Turning
     sheet: Layers
     k: float
+    kept: float | None = None
+
+    def neutral_mm(self, sign: float) -> Vector2:
+        """Return the offsets of both edges of the unrolled surface where it bends towards sign * N, mm."""
+        return tapering(self.kept) * self.sheet.neutral_mm(sign, self.k)
 
     @property
     def material(self) -> Material:
@@ -52,6 +60,11 @@ class Bent:
         return 1.0 / tight.curvature - sign * self.sheet.inside_mm(sign)
 
 
+def tapering(kept: float | None) -> Vector2:
+    """Return the share of an offset that both edges move by: all of it, or nothing where u is kept."""
+    return np.array([float(kept != 0.0), float(kept != 1.0)])
+
+
 def inside_radii(at: Array, sheet: Layers, u: int) -> Values:
     """Return the inside radii at one end of rulings that bend, mm, never negative; `at`: rates of shape (n, 3)."""
     sign = np.sign(at[:, 0])
@@ -73,7 +86,7 @@ def radii_at(bent: Bent, places: Values) -> list[list[float | None]]:
 def across(bent: Bent, places: Values, distance_mm: float | None = None) -> Array:
     """Return the distance across the rulings from the first one up to places, along c0 and along c1, mm, shape (n, 2).
 
-    On the parallel surface at a distance; on the neutral surface if none is given.
+    On the parallel surface at a distance; on the one that is unrolled if none is given.
     """
     total = np.zeros((places.size, 2))
     for stretch in bent.bends.stretches:
@@ -83,6 +96,6 @@ def across(bent: Bent, places: Values, distance_mm: float | None = None) -> Arra
         upto = bent.bends.pieces[stretch.piece].upto(np.append(ends, stretch.low))
         passed = upto[:-1] - upto[-1]
         sign = 1.0 if stretch.angle_rad >= 0.0 else -1.0
-        distance = bent.sheet.neutral_mm(sign, bent.k) if distance_mm is None else distance_mm
-        total += passed[:, 1:] - distance * passed[:, :1]
+        distances = bent.neutral_mm(sign) if distance_mm is None else np.full(2, distance_mm)
+        total += passed[:, 1:] - distances * passed[:, :1]
     return total

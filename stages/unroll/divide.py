@@ -9,7 +9,8 @@ can be.  Then the largest of them is made as small, in area, as their number per
 
 Whether a run overlaps is decided by the area that it covers twice (`geometry.cover`), its edges as arcs through three
 of their points, each turning by at most `MOST_TURN`; `unroll` measures each blank again on the lines and arcs that are
-cut.  Not for a pattern that overlaps within 1/4096 of a patch (a fold): that part stays whole.
+cut.  Not for a pattern that overlaps within 1/4096 of a patch (a fold), nor for a part with an outline of its own (a
+trim): that part stays whole.
 """
 
 from dataclasses import dataclass, replace
@@ -68,7 +69,7 @@ def blanks(certificate: Certificate, tol: Tolerances) -> tuple[Certificate, ...]
     Where the development does not resolve the part stays whole too: `unroll` says so.
     """
     surface = certificate.surface
-    if not isinstance(surface, RuledSurface) or surface.part.spec.cut != "auto":
+    if not isinstance(surface, RuledSurface) or surface.part.spec.cut != "auto" or surface.trim is not None:
         return (certificate,)
     try:
         flat = neutral(surface, tol).surface

@@ -15,9 +15,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stages.geometry import biarc, contours
-from stages.geometry.arcpath import ArcPath, polygon
-from stages.geometry.arrays import Array, Vector2, cross2, norm, unit
+from stages.geometry import contours
+from stages.geometry.arrays import Array, Vector2, cross2, unit
 from stages.geometry.drill import drilled
 from stages.geometry.flatmap import Development
 from stages.geometry.mapped import FlatStrip, images
@@ -35,9 +34,9 @@ from stages.model.features import (
 )
 from stages.model.pattern import Contour, Mark, Text
 from stages.model.report import Finding, Metric
-from stages.model.surface import Placed, Plate, RuledSurface
+from stages.model.surface import Placed, Plate, RuledSurface, Surface
 from stages.unroll import outline
-from stages.unroll.marks import ruling_marks
+from stages.unroll.marks import clipped, ruling_marks, traced
 from stages.unroll.notches import Notch, Notched, notched
 from stages.unroll.notches import on_outline as notch_on_outline
 from stages.unroll.notches import on_strip as notch_on_strip
@@ -70,10 +69,13 @@ class Flat:
     along: Vector2 | None = None
 
 
-def on_strip(surface: RuledSurface, development: Development, outer: Contour) -> Features:
+def on_strip(
+    surface: RuledSurface, development: Development, outer: Contour, holes: tuple[Contour, ...] = ()
+) -> Features:
     """Return the features of a strip, or of a blank of one, through its flat map.
 
     surface: the one that was developed (the neutral surface), with the part's v in its `spans`.
+    outer, holes: its contours, those of its trim where it has one; notches are in `outer`.
     Raises NoSolutionError where a curve is not resolved or its arcs do not keep the chord.
     """
     knots = np.array([*(float(low) for low, _ in surface.spans), float(surface.spans[-1][1])])
@@ -82,6 +84,11 @@ def on_strip(surface: RuledSurface, development: Development, outer: Contour) ->
     findings: list[Finding] = []
     notches: list[Notch] = []
     for one in surface.features:
+        if isinstance(one.spec, NotchSpec) and (surface.trim is not None or one.spec.edge == "outline"):
+            on_trim = _notch_on_trim(one, one.spec, outer)
+            findings += [on_trim] if isinstance(on_trim, Finding) else []
+            notches += [on_trim] if isinstance(on_trim, Notch) else []
+            continue
         here = _share(one, knots)
         if here == CUT:
             findings.append(_cut_through(one))
@@ -98,7 +105,15 @@ def on_strip(surface: RuledSurface, development: Development, outer: Contour) ->
     rulings = [spec for spec in surface.part.spec.mark if isinstance(spec, RulingMarks)]
     lines = tuple(mark for spec in rulings for mark in ruling_marks(development, spec, chord_mm=outer.chord_mm))
     made_outer = notched(outer, notches)
-    return _assembled(surface, made_outer, found, findings, lines=lines)
+    return assembled(surface, made_outer, found, findings, lines=lines, holes=holes)
+
+
+def _notch_on_trim(one: Placed, spec: NotchSpec, outer: Contour) -> Notch | Finding:
+    """Return a notch by its distance along the outline; a trimmed part has no other edge."""
+    if spec.edge == "outline":
+        return notch_on_outline(one, spec, outer.edges)
+    message = f'{one.name}: a trimmed part has no edge {spec.edge!r}; give edge = "outline" and a distance along it'
+    return Finding("no-such-edge", message, fatal=True, where={"feature": one.name})
 
 
 def on_plate(plate: Plate, outer: Contour, holes: tuple[Contour, ...]) -> Features:
@@ -113,7 +128,7 @@ def on_plate(plate: Plate, outer: Contour, holes: tuple[Contour, ...]) -> Featur
     ]
     off = [notch for notch in notches if isinstance(notch, Finding)]
     made_outer = notched(outer, [notch for notch in notches if isinstance(notch, Notch)])
-    return _assembled(plate, made_outer, found, off, holes=holes)
+    return assembled(plate, made_outer, found, off, holes=holes)
 
 
 ON, OFF, CUT = "on", "off", "cut"
@@ -178,8 +193,8 @@ def _circle_hole(made: Flat) -> Flat:
     return Flat(made.placed, (circle,), at, made.along)
 
 
-def _assembled(
-    surface: RuledSurface | Plate,
+def assembled(
+    surface: Surface,
     made_outer: Notched,
     found: Sequence[Flat],
     findings: Sequence[Finding],
@@ -238,36 +253,12 @@ def _marks(made: Flat, outer: Contour) -> list[Mark]:
     """Return the lines of a mark."""
     name, spec = made.placed.name, made.placed.spec
     if isinstance(spec, CurveMark):
-        return [Mark(name, _traced(made.edges, outer.chord_mm))]
+        return [Mark(name, traced(made.edges, outer.chord_mm))]
     if isinstance(spec, PointMark) and made.at is not None and made.along is not None:
         x, y = made.along
         arms = (float(spec.size) / 2.0 * np.array([x, y]), float(spec.size) / 2.0 * np.array([-y, x]))
-        return [Mark(name, path) for arm in arms for path in _clipped(made.at - arm, made.at + arm, outer)]
+        return [Mark(name, path) for arm in arms for path in clipped(made.at - arm, made.at + arm, outer)]
     return []
-
-
-def _traced(edges: Sequence[PlaneCurve], chord_mm: float) -> ArcPath:
-    """Return the path of a curve: closed if it ends where it begins."""
-    first, last = edges[0].at(np.array([0.0]))[0], edges[-1].at(np.array([1.0]))[0]
-    if norm(first - last) <= biarc.ZERO_LENGTH_MM:
-        return biarc.trace(edges, accuracy=chord_mm)
-    parts = [biarc.fit(edge, accuracy=chord_mm) for edge in edges]
-    vertices = np.concatenate([*(part.vertices[:-1] for part in parts), parts[-1].vertices[-1:]])
-    return ArcPath(vertices, np.append(np.concatenate([part.bulges[:-1] for part in parts]), 0.0), closed=False)
-
-
-def _clipped(start: Vector2, end: Vector2, outer: Contour) -> list[ArcPath]:
-    """Return what of a line lies on the part, as far as that is longer than nothing."""
-    import shapely
-
-    region = shapely.Polygon(polygon(outer.path, accuracy=min(outer.chord_mm, CLIP_MM)))
-    left = shapely.LineString([start, end]).intersection(region)
-    lines = [np.asarray(line.coords) for line in getattr(left, "geoms", [left]) if line.length > biarc.ZERO_LENGTH_MM]
-    return [ArcPath(line[[0, -1]], np.zeros(2), closed=False) for line in lines]
-
-
-CLIP_MM = 0.01
-"""How near the outline the arm of a cross ends."""
 
 
 def _text(made: Flat) -> Text:

@@ -4,7 +4,8 @@ Every run that bends one way, by theta, is divided into N = ceil(theta / delta) 
 up to the part's own angle; each hit lies in the middle of its step, between two flat facets [1]_.  On a cone or any
 other developable, equal spacing would not do: the hits follow the rulings.  A facet is off the surface by
 rho (1 - cos(delta / 2)), rho the mean radius over its step at the wider end.  Folds between patches are hits of their
-own, with their own angle and the smallest radius of the material.
+own, with their own angle and the smallest radius of the material; they are drawn on every part that has them, asked for
+or not.
 
 The flat frame is seen from the side of N = p x c0'.  A bend towards the viewer is `up` (BEND_UP), away from the viewer
 `down` (BEND_DOWN).  Radii in the table are inside radii, at the c0 end and at the c1 end of the line.
@@ -12,6 +13,7 @@ The flat frame is seen from the side of N = p x c0'.  A bend towards the viewer 
 .. [1] MetalForming magazine (metalformingmagazine.com), "Step bending": hits, pitch and the width of the die.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
 from math import ceil, cos, degrees, radians
@@ -83,23 +85,52 @@ def formed(bent: Bent, neutral: RuledSurface, development: Development, spec: Be
     return Forming(marks, _metrics(bent, lines), tuple(_crossings(bent, lines)), rows)
 
 
+def folded(bent: Bent, neutral: RuledSurface, development: Development) -> Forming:
+    """Return the folds between patches as bend lines, for a part without bend lines of its own."""
+    lines = _lines(bent, neutral, development, folds_of(bent), FOLD_NAME)
+    return Forming(tuple(_mark(line) for line in lines), (), (), tuple(_row(bent, line, None) for line in lines))
+
+
+FOLD_NAME = "fold"
+
+
 # Where
 
 
 def bend_lines(bent: Bent, neutral: RuledSurface, development: Development, spec: BendSpec) -> list[BendLine]:
     """Return the hits in the order of v."""
-    found: list[tuple[float, float, bool, float]] = []
+    found: list[Hit] = []
     for run in runs(bent.bends):
         angle = run_angle(run)
         if is_fold(run[0]):
             found.append((float(run[0].piece), angle, True, 0.0))
         elif abs(angle) > FLAT:
             found += [(place, step, False, off) for place, step, off in _hits(bent, run, spec)]
+    return _lines(bent, neutral, development, found, spec.name)
+
+
+Hit = tuple[float, float, bool, float]
+"""Place, signed angle in rad, whether it is a fold, and how far its facet is off in mm."""
+
+
+def folds_of(bent: Bent) -> list[Hit]:
+    """Return the folds between patches."""
+    return [
+        (float(stretch.piece), stretch.angle_rad, True, 0.0) for stretch in bent.bends.stretches if is_fold(stretch)
+    ]
+
+
+def _lines(
+    bent: Bent, neutral: RuledSurface, development: Development, found: Sequence[Hit], name: str
+) -> list[BendLine]:
+    """Return hits with their radii, their distances across the rulings, and their lines in the flat."""
+    if not found:
+        return []
     at = np.array([place for place, *_ in found])
     rulings = flat_rulings(neutral, development, [bent.v_of(place) for place in at])
     fold_radius: list[float | None] = [bent.material.bend_radius_min_mm] * 2
     return [
-        BendLine(f"{spec.name}-{i + 1}", *hit, fold_radius if hit[2] else radii, reach, ends)
+        BendLine(f"{name}-{i + 1}", *hit, fold_radius if hit[2] else radii, reach, ends)
         for i, (hit, radii, reach, ends) in enumerate(
             zip(found, radii_at(bent, at), across(bent, at), rulings, strict=True)
         )

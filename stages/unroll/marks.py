@@ -1,19 +1,22 @@
-"""Rulings as lines to be etched, at equal turning of the surface's normal.
+"""The lines of marks: rulings as lines to be etched, at equal turning of the surface's normal.
 
 Between two lines the part bends by the same angle; equal spacing would do so on right cones and cylinders only.  On a
 part flattened by least strain the rulings are slightly curved, and so are their lines.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from stages.geometry import biarc
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.arcpath import ArcPath, polygon
+from stages.geometry.arrays import Vector2, norm
 from stages.geometry.flatmap import DevelopedRuling, Development
+from stages.geometry.plane import PlaneCurve
 from stages.geometry.turning import turning, turning_places
 from stages.model.features import RulingMarks
-from stages.model.pattern import Mark
+from stages.model.pattern import Contour, Mark
 
 
 def ruling_marks(development: Development, spec: RulingMarks, *, chord_mm: float) -> tuple[Mark, ...]:
@@ -45,3 +48,27 @@ def _line(development: Development, place: float, chord_mm: float) -> ArcPath:
     if not ruling.is_straight():
         return biarc.fit(ruling, accuracy=chord_mm)
     return ArcPath(ruling.at(np.array([0.0, 1.0])), np.zeros(2), closed=False)
+
+
+def traced(edges: Sequence[PlaneCurve], chord_mm: float) -> ArcPath:
+    """Return the path of a curve: closed if it ends where it begins."""
+    first, last = edges[0].at(np.array([0.0]))[0], edges[-1].at(np.array([1.0]))[0]
+    if norm(first - last) <= biarc.ZERO_LENGTH_MM:
+        return biarc.trace(edges, accuracy=chord_mm)
+    parts = [biarc.fit(edge, accuracy=chord_mm) for edge in edges]
+    vertices = np.concatenate([*(part.vertices[:-1] for part in parts), parts[-1].vertices[-1:]])
+    return ArcPath(vertices, np.append(np.concatenate([part.bulges[:-1] for part in parts]), 0.0), closed=False)
+
+
+def clipped(start: Vector2, end: Vector2, outer: Contour) -> list[ArcPath]:
+    """Return what of a line lies on the part, as far as that is longer than nothing."""
+    import shapely
+
+    region = shapely.Polygon(polygon(outer.path, accuracy=min(outer.chord_mm, CLIP_MM)))
+    left = shapely.LineString([start, end]).intersection(region)
+    lines = [np.asarray(line.coords) for line in getattr(left, "geoms", [left]) if line.length > biarc.ZERO_LENGTH_MM]
+    return [ArcPath(line[[0, -1]], np.zeros(2), closed=False) for line in lines]
+
+
+CLIP_MM = 0.01
+"""How near the outline the arm of a cross ends."""

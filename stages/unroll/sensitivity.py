@@ -1,7 +1,8 @@
 """How much each dimension of the flat pattern changes with thickness, K and bending radius.
 
 The neutral surface at the offset d has the rates of the surface as given, with the widths c0'.w - d beta and
-c1'.w - d beta; how rulings turn and how long they are does not change.  So the pattern is laid out again from rates
+c1'.w - d beta; how rulings turn and how long they are does not change (but where d is 0 at an apex and not at the other
+edge: there rulings turn by the difference of widths over their length).  So the pattern is laid out again from rates
 sampled once, for each change, and the differences are central; the same at half the step says how far to trust them.
 
     thickness   by 0.1 mm, the face that the job gives and K held
@@ -9,7 +10,8 @@ sampled once, for each change, and the differences are central; the same at half
     radius      every bending radius of the middle surface larger by 1 % at the same turning of the normal: all its
                 widths, and with them the turning of the rulings in the flat, larger by 1 % wherever it bends
 
-Width and height are taken at 33 points per panel.  Lengths along rulings do not depend on any of the three.
+Width and height are taken at 33 points per panel.  Lengths along rulings do not depend on any of the three (those to an
+apex do, by d / L of the change of d, which is left out).
 """
 
 from collections.abc import Callable
@@ -24,7 +26,7 @@ from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
 from stages.geometry.ruled import sideways
 from stages.geometry.turning import FLAT, PatchTurning, Stretch, is_fold
 from stages.model.sheetface import Layers
-from stages.unroll.bent import Bent
+from stages.unroll.bent import Bent, tapering
 
 DIMENSIONS = ("c0", "c1", "start", "end", "width", "height", "area")
 """What is laid out: lengths in mm, the area in mm2."""
@@ -54,11 +56,16 @@ class Flow(ArrayValue):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What the pattern is laid out with: the sheet, K, and the share by which bending radii are larger."""
+    """What the pattern is laid out with: sheet, K, the edge kept, and the share by which bending radii are larger."""
 
     sheet: Layers
     k: float
+    kept: float | None
     wider: float = 0.0
+
+    def neutral_mm(self, sign: float) -> Vector2:
+        """Return how far c0 and c1 of the unrolled surface lie from those given, mm."""
+        return tapering(self.kept) * self.sheet.neutral_mm(sign, self.k)
 
 
 def sensitivity(bent: Bent) -> dict[str, object]:
@@ -68,15 +75,15 @@ def sensitivity(bent: Bent) -> dict[str, object]:
     if bent.bends.total_rad <= FLAT:
         return {"note": "the part is flat: none of its dimensions depends on thickness, K or bending radius"}
     flows = [_flow(bent.bends.pieces[s.piece], s) for s in bent.bends.stretches if not is_fold(s)]
-    sheet, k, t = bent.sheet, bent.k, bent.sheet.thickness_mm
+    sheet, k, kept, t = bent.sheet, bent.k, bent.kept, bent.sheet.thickness_mm
 
     def thicker(by: float) -> Change:
-        return Change(Layers(sheet.minus_mm * (1.0 + by / t), sheet.plus_mm * (1.0 + by / t)), k)
+        return Change(Layers(sheet.minus_mm * (1.0 + by / t), sheet.plus_mm * (1.0 + by / t)), k, kept)
 
     return {
         "per_0_1_mm_thickness": _row(flows, thicker, min(THICKNESS_STEP, t / 4.0), 0.1),
-        "per_0_01_k": _row(flows, lambda by: Change(sheet, k + by), K_STEP, 0.01),
-        "per_1_percent_radius": _row(flows, lambda by: Change(sheet, k, by), RADIUS_STEP, 0.01),
+        "per_0_01_k": _row(flows, lambda by: Change(sheet, k + by, kept), K_STEP, 0.01),
+        "per_1_percent_radius": _row(flows, lambda by: Change(sheet, k, kept, by), RADIUS_STEP, 0.01),
     }
 
 
@@ -141,16 +148,20 @@ def dimensions(flows: list[Flow], change: Change) -> Values:
 
 def _laid(flow: Flow, change: Change, phi0: float, q0: Vector2) -> tuple[Vector3, Points2, float, Vector2]:
     """Return c0, c1 and area of a stretch, points of its outline, and where it ends: angle and position."""
-    sheet, distance = change.sheet, change.sheet.neutral_mm(flow.sign, change.k)
+    sheet, (at_c0, at_c1) = change.sheet, change.neutral_mm(flow.sign)
     wider = np.where(np.abs(flow.beta) > FLAT, change.wider, 0.0)
-    across_p = flow.across_p * (1.0 + wider)
-    across = flow.across - distance * flow.beta + wider * (flow.across - sheet.middle_mm * flow.beta)
+    tapered = (at_c1 - at_c0) * flow.beta
+    across_p = flow.across_p * (1.0 + wider) - tapered
+    across = flow.across - at_c0 * flow.beta + wider * (flow.across - sheet.middle_mm * flow.beta)
+    turn = flow.turn * (1.0 + wider) - np.divide(
+        tapered, flow.length, out=np.zeros_like(tapered), where=flow.length > 0.0
+    )
     half = np.diff(flow.breaks)[:, None] / 2.0
     weights = half * WEIGHTS
     speeds = np.hypot(flow.along, across), np.hypot(flow.along + flow.along_p, across + across_p)
     area = flow.length * (across + across_p / 2.0)
     made = np.array([(weights * figure).sum() for figure in (*speeds, area)])
-    phi = _chained((half * flow.turn * (1.0 + wider))[..., None], np.array([phi0]))[..., 0]
+    phi = _chained((half * turn)[..., None], np.array([phi0]))[..., 0]
     e, e_perp = _axes(phi @ AT_NODES.T)
     velocity = half[..., None] * (flow.along[..., None] * e + across[..., None] * e_perp)
     c0 = np.einsum("sk,pkc->psc", SHOWN, _chained(velocity, q0))

@@ -5,12 +5,15 @@ of the sheet or its middle (`stages.model.sheetface`).  Parallel surfaces of a d
 same rulings (`stages.geometry.offset`).
 
 One K holds for the whole part, that of its smallest inside radius where K goes by r/t.  A K that varied along a ruling
-would leave nothing to unroll: no surface then keeps its lengths.  What the one K neglects is computed, edge by edge:
-int |K(r/t) - K| t |d theta|, and reported where it exceeds the chord.
+would leave nothing to unroll: no surface then keeps its lengths.  What the one K neglects is computed, edge by edge
+(`stages.unroll.variation`), and reported where it exceeds the chord.
 
 Where K is not 1/2 and the surface bends both ways, the neutral surface changes sides at each inflection.  There the
 offsets differ by (1 - 2K) t across one ruling, which moves a piece along its normal and not in the flat: the patches
 are divided at the inflections, and their flat images join.  Folds between patches get no allowance of their own.
+
+An apex is no bend: it counts neither for K nor for what one K neglects.  A neutral surface that would pass it is
+replaced by one that runs into it (`stages.unroll.apexes`).
 """
 
 from collections.abc import Sequence
@@ -20,18 +23,18 @@ from fractions import Fraction
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Array, Values
-from stages.geometry.offset import offset, restricted
-from stages.geometry.quadrature import WEIGHTS
+from stages.geometry.offset import offset, restricted, tapered
 from stages.geometry.ruled import RuledPatch
-from stages.geometry.tightest import Tight, tightest
+from stages.geometry.tightest import Tight, apexes, tightest
 from stages.geometry.turning import FLAT, PatchTurning, Stretch, Turning, is_fold, turning
-from stages.model.kfactor import MIDDLE, Rule, k_at
+from stages.model.kfactor import MIDDLE, k_at
 from stages.model.report import Evidence, Finding, Metric, Where
 from stages.model.sheetface import Layers, layers
 from stages.model.surface import RuledSurface, Span
 from stages.model.tolerances import Tolerances
-from stages.unroll.bent import Bent, inside_radii
+from stages.unroll.apexes import apex_report, kept_edge
+from stages.unroll.bent import Bent
+from stages.unroll.variation import Variation, variation
 
 DIN_LARGE = 10.0**0.7
 """From this r/t on, 5.01, DIN 6935 gives K = 1/2 as well."""
@@ -69,7 +72,7 @@ def neutral(surface: RuledSurface, tol: Tolerances) -> Neutral:
     if isinstance(sheet, Finding):
         where: Where = {"v": thin.v_of(float((sheet.where or {}).get("v", 0.0)))}
         return Neutral(surface, thin, findings=(Finding(sheet.code, sheet.message, sheet.fatal, where),))
-    tight = [(sign, found) for sign in (1.0, -1.0) if (found := tightest(bends, sign)) is not None]
+    tight = [(sign, found) for sign in (1.0, -1.0) if (found := tightest(bends, sign, apexes(bends))) is not None]
     least = min((Bent(surface, bends, sheet, MIDDLE).inside_mm(*found) for found in tight), default=np.inf)
     k = float(k_at(law.rule, np.array([max(least, 0.0) / thickness]))[0])
     return _neutral(Bent(surface, bends, sheet, k), tight, least, tol)
@@ -85,11 +88,43 @@ def _unresolved(error: NoSolutionError) -> Finding:
 
 
 def _neutral(bent: Bent, tight: list[tuple[float, Tight]], least_mm: float, tol: Tolerances) -> Neutral:
-    passed = tuple(finding for found in tight if (finding := _past_edge(bent, *found)) is not None)
-    varied = _variation(bent)
-    findings = (*passed, *_k_findings(bent, varied, tol), *_fold_findings(bent))
+    at_apex = _at_apexes(bent)
+    bent = replace(bent, kept=at_apex.kept)
+    passed = (*at_apex.refused, *(finding for found in tight if (finding := _past_edge(bent, *found)) is not None))
+    varied = variation(bent)
+    findings = (*passed, *at_apex.findings, *_k_findings(bent, varied, tol), *_fold_findings(bent))
     made = bent.surface if passed else neutral_surface(bent)
-    return Neutral(made, bent, _metrics(bent), findings, {"thickness": _detail(bent, least_mm, varied)})
+    metrics = (*_metrics(bent), *at_apex.metrics)
+    return Neutral(made, bent, metrics, findings, {"thickness": _detail(bent, least_mm, varied)})
+
+
+@dataclass(frozen=True, slots=True)
+class AtApexes:
+    """What becomes of the apexes: the edge that stays, what that neglects, and what is refused."""
+
+    kept: float | None = None
+    metrics: tuple[Metric, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    refused: tuple[Finding, ...] = ()
+
+
+def _at_apexes(bent: Bent) -> AtApexes:
+    """Return what is done where the neutral surface would pass an apex; nothing where it passes none."""
+    points = apexes(bent.bends)
+    tight = [(sign, found) for sign in (1.0, -1.0) if (found := tightest(bent.bends, sign)) is not None]
+    sharp = [(sign, found) for sign, found in tight if (found.piece, found.u) in points]
+    refused = tuple(finding for found in sharp if (finding := _past_edge(bent, *found)) is not None)
+    if not refused:
+        return AtApexes()
+    kept = kept_edge(bent, points)
+    if kept is None:
+        return AtApexes(refused=tuple(_with_remedy(finding) for finding in refused))
+    metric, finding = apex_report(bent, kept, points)
+    return AtApexes(kept, (metric,), (finding,))
+
+
+def _with_remedy(finding: Finding) -> Finding:
+    return replace(finding, message=f"{finding.message}; give the middle surface and K = 0.5, or cut the tips off")
 
 
 def _past_edge(bent: Bent, sign: float, tight: Tight) -> Finding | None:
@@ -117,10 +152,16 @@ def neutral_surface(bent: Bent) -> RuledSurface:
     for stretches, distance in _offsets(bent):
         first, last = stretches[0], stretches[-1]
         piece, (low, high) = bent.bends.pieces[first.piece], bent.surface.spans[first.piece]
-        moved = offset(piece.patch, distance, piece.normal)
+        moved = _moved(piece, distance, bent.kept)
         patches.append(restricted(moved, first.low, last.high))
         spans.append((low + Fraction(first.low) * (high - low), low + Fraction(last.high) * (high - low)))
     return replace(bent.surface, patches=tuple(patches), spans=tuple(spans))
+
+
+def _moved(piece: PatchTurning, distance: float, kept: float | None) -> RuledPatch:
+    if kept is None or distance == 0.0:
+        return offset(piece.patch, distance, piece.normal)
+    return tapered(piece.patch, distance, piece.normal, kept)
 
 
 def _offsets(bent: Bent) -> list[tuple[list[Stretch], float]]:
@@ -146,49 +187,7 @@ def _ways(stretches: Sequence[Stretch]) -> list[float]:
     return ways
 
 
-# What one K neglects
-
-
-@dataclass(frozen=True, slots=True)
-class Variation:
-    """How K by a rule differs from the one K used: least and largest r/t and K, and by how much each edge changes.
-
-    change_mm: length that the rule would add to c0 and to c1, signed.  bound_mm: the same with all signs positive.
-    """
-
-    ratio: tuple[float, float]
-    k: tuple[float, float]
-    change_mm: tuple[float, float]
-    bound_mm: float
-
-
-def _variation(bent: Bent) -> Variation | None:
-    """Return the variation of K over the part by its own rule; by DIN 6935 where nobody gave one."""
-    if all(is_fold(stretch) or abs(stretch.angle_rad) <= FLAT for stretch in bent.bends.stretches):
-        return None
-    law = bent.material.k_factor
-    rule: Rule = law.rule if law.given else "din6935"
-    found = [_of_piece(piece, bent, rule) for piece in bent.bends.pieces]
-    ratios, ks = (np.concatenate([entry[i] for entry in found]) for i in (0, 1))
-    change, bound = (np.sum([entry[i] for entry in found], axis=0) for i in (2, 3))
-    return Variation(
-        (float(ratios.min()), float(ratios.max())),
-        (float(ks.min()), float(ks.max())),
-        (float(change[0]), float(change[1])),
-        float(bound.max()),
-    )
-
-
-def _of_piece(piece: PatchTurning, bent: Bent, rule: Rule) -> tuple[Values, Values, Array, Array]:
-    """Return r/t and K at the nodes that bend, and the change of both edges in mm, signed and unsigned."""
-    beta, t = piece.rates[..., 0], bent.sheet.thickness_mm
-    weights = np.diff(piece.breaks)[:, None] / 2.0 * WEIGHTS
-    bends = np.abs(beta) > FLAT
-    turn = (np.abs(beta) * weights)[bends]
-    ratios = np.stack([inside_radii(piece.rates[bends], bent.sheet, u) for u in (0, 1)]) / t
-    ks = np.stack([k_at(rule, row) for row in ratios])
-    change = (ks - bent.k) * t * turn
-    return ratios.ravel(), ks.ravel(), change.sum(axis=1), np.abs(change).sum(axis=1)
+# What is found
 
 
 def _k_findings(bent: Bent, varied: Variation | None, tol: Tolerances) -> tuple[Finding, ...]:

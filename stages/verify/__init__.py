@@ -11,8 +11,8 @@ flattening: `unroll` may still refuse.
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.model.report import Evidence, Metric, Outcome, StageReport, Where
-from stages.model.surface import Certificate, Plate, RuledSurface, Surface
+from stages.model.report import Evidence, Finding, Metric, Outcome, StageReport, Where
+from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
 from stages.verify import sampled
 from stages.verify.bending import bending
@@ -30,6 +30,8 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
     """Return the certificate of a surface whose class the job accepts, else None with the reason."""
     if isinstance(surface, Plate):
         return _plate(surface)
+    if isinstance(surface, MeshSurface):
+        return _mesh(surface)
     examined = [examine(patch, i) for i, patch in enumerate(surface.patches)]
     proved = all(one.proved for one in examined)
     bends, bent = bending(surface)
@@ -55,6 +57,13 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
     if reached is None or not report.passed:
         return Outcome(None, report)
     return Outcome(Certificate(surface, reached, proved), report)
+
+
+def _mesh(surface: MeshSurface) -> Outcome[Certificate | None]:
+    """Refuse a mesh that was not recognised."""
+    message = "the mesh is no surface that is recognised (plane, cylinder, cone); what else it may be is not judged"
+    report = StageReport("verify", surface.part.name, (), (Finding("mesh-not-judged", message, fatal=True),))
+    return Outcome(None, report)
 
 
 def _plate(plate: Plate) -> Outcome[Certificate | None]:

@@ -14,7 +14,8 @@ from PIL import Image
 from pipeline.report import pictures_canvas as page
 from pipeline.report.pictures import part_picture, sheet_picture
 from pipeline.report.pictures_edges import corner_points, hole_text, rulings, side_area, side_length, sides
-from pipeline.report.pictures_flat import pattern_room, upright
+from pipeline.report.pictures_flat import pattern_room
+from pipeline.report.pictures_flat_names import upright
 from pipeline.report.pictures_net import frame_of, net, normals, ruling_places, view_direction
 from pipeline.report.pictures_sheet import FILLS, Free, offcut
 from stages.construct import construct

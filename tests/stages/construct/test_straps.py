@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from stages.construct.curves import Chain
-from stages.construct.straps import senses, strap
+from stages.construct.straprulings import senses
+from stages.construct.straps import strap
 from stages.geometry.arrays import norm
 from stages.geometry.curves import Bezier, Circular
 from stages.geometry.development import develop

@@ -1,10 +1,15 @@
 """A rail along an arc of rulings with one tangent plane: closed form for two ellipses, series for derivatives."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
-from stages.geometry.curves import Circular
-from stages.geometry.linked import Linked, mismatch
+from stages.geometry.curves import Circular, affine, bezier, restrict
+from stages.geometry.implicit import implicit
+from stages.geometry.linked import Linked, arc, both_rails, link
+from stages.geometry.mismatch import mismatch
+from stages.geometry.railcrossing import crossings
 from stages.geometry.roots import bracketed
 from stages.geometry.ruled import between, warp
 from stages.unroll.sides import surface_figures
@@ -23,7 +28,7 @@ def other_parameter(t: np.ndarray) -> np.ndarray:
 def linked(knots: int = 9) -> tuple[Linked, Linked]:
     t = np.linspace(0.0, 1.0, knots)
     w = t + other_parameter(t)
-    return Linked(LOWER, UPPER, w, t, on_b=False), Linked(LOWER, UPPER, w, t, on_b=True)
+    return both_rails(link(LOWER, UPPER, w, t))
 
 
 @pytest.mark.parametrize("knots", [2, 3, 9])
@@ -76,3 +81,73 @@ def test_zeros_are_found_to_rounding_also_of_flat_and_of_steep_functions() -> No
 def test_a_bracket_without_a_change_of_sign_gives_the_end_that_is_nearer_to_zero() -> None:
     assert bracketed(lambda x, _: x + 0.25, np.zeros(1), np.ones(1)) == 0.0
     assert bracketed(lambda x, _: 1.25 - x, np.zeros(1), np.ones(1)) == 1.0
+
+
+@pytest.mark.parametrize("knots", [2, 9])
+def test_the_rates_are_those_of_the_closed_form(knots: int) -> None:
+    """w = t + s(t) with tan b = 4 tan a: dt/dw = 1 / (1 + s'), d2t/dw2 = -s'' / (1 + s')^3."""
+    rail, _ = linked(knots)
+    t = np.linspace(0.0, 1.0, 41)
+    a, quarter = np.pi / 2.0 * t, np.pi / 2.0
+    round_ = np.cos(a) ** 2 + 16.0 * np.sin(a) ** 2
+    slope, bend = 4.0 / round_, -4.0 * 15.0 * np.sin(2.0 * a) * quarter / round_**2
+    found = arc(rail.link, t + other_parameter(t), 2)
+    assert_near(found[0], t, bound=4e-15, why="a dozen roundings")
+    assert_near(found[1], 1.0 / (1.0 + slope), bound=1e-13, why="quotients of triple products")
+    assert_near(2.0 * found[2], -bend / (1.0 + slope) ** 3, bound=1e-11, why="once more divided")
+
+
+@pytest.mark.parametrize("on_b", [False, True])
+@pytest.mark.parametrize(("low", "high"), [("1/4", "2/3"), ("2/3", "1/4"), ("1", "0")])
+def test_a_part_is_the_curve_there(low: str, high: str, on_b: bool) -> None:
+    curve = linked()[on_b]
+    part = restrict(curve, Fraction(low), Fraction(high))
+    v, width = np.linspace(0.0, 1.0, 11), float(Fraction(high) - Fraction(low))
+    whole = curve.jet(float(Fraction(low)) + width * v, 2) * (width ** np.arange(3.0))[:, None, None]
+    assert_near(part.jet(v, 2), whole, bound=1e-12, why="the place differs by a rounding, derivatives are up to 50")
+
+
+def test_parts_meet_exactly() -> None:
+    curve = linked()[1]
+    first, second = (restrict(curve, Fraction(a), Fraction(b)) for a, b in (("0", "1/3"), ("1/3", "1")))
+    assert (first.jet(np.ones(1), 2)[0] == second.jet(np.zeros(1), 2)[0]).all()
+
+
+@pytest.mark.parametrize("on_b", [False, True])
+def test_an_image_is_the_image_of_every_point(on_b: bool) -> None:
+    curve = linked()[on_b]
+    matrix, shift = [[0, -2, 0], [1, 0, 3], [0, 1, 1]], [5, -1, 100]
+    image = affine(curve, [[Fraction(x) for x in row] for row in matrix], [Fraction(x) for x in shift])
+    v = np.linspace(0.0, 1.0, 7)
+    expected = curve.jet(v, 3) @ np.array(matrix, dtype=float).T
+    expected[0] += np.array(shift, dtype=float)
+    assert_near(image.jet(v, 3), expected, bound=1e-12 * np.abs(expected).max(), why="two products")
+
+
+def test_a_crossing_of_two_arcs_is_found_and_passed_exactly() -> None:
+    """A rail moved along: t = s, and another arc crosses where the tangent is across the curvature's change."""
+    points = [[0, 0, 0], [1, 2, 0], [3, -1, 0], [4, 1, 0]]
+    a, b = (
+        bezier([[Fraction(x) + m for x, m in zip(p, by, strict=True)] for p in points]) for by in ((0, 0, 0), (1, 0, 2))
+    )
+    w = np.linspace(0.0, 2.0, 51)
+    ((t, s),) = crossings(link(a, b, w, w / 2.0))
+    # the inflection: y'' x' = x'' y' with x' = 3 (1 + 2 t - 2 t^2), y' = 3 (2 - 10 t + 10 t^2)
+    x1, x2 = 3.0 * (1.0 + 2.0 * t - 2.0 * t * t), 3.0 * (2.0 - 4.0 * t)
+    y1, y2 = 3.0 * (2.0 - 10.0 * t + 10.0 * t * t), 3.0 * (20.0 * t - 10.0)
+    assert_near([t - s, x1 * y2 - x2 * y1], [0.0, 0.0], bound=1e-12, why="Newton's method on both slopes of F")
+    end = t + s
+    before = link(a, b, np.append(w[w < end - 1e-6], end), np.append(w[w < end - 1e-6], end) / 2.0)
+    near = end - np.array([0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2, 1e-1])
+    found = arc(before, near, 2)
+    assert_near(found[0], near / 2.0, bound=1e-14, why="the series about the crossing")
+    assert_near(found[1], np.full(7, 0.5), bound=1e-12, why="F_t is 0.1 of its size where the series ends")
+    assert_near(found[2], np.zeros(7), bound=1e-10, why="and once more divided")
+
+
+def test_an_implicit_function_is_found_where_two_curves_cross() -> None:
+    """(x - 0.3 h - h^2)(x - 2 h) = 0: the curve whose rate is nearer to the one expected."""
+    G = np.zeros((5, 5, 2))
+    G[2, 0], G[1, 1], G[1, 2], G[0, 2], G[0, 3] = 1.0, -2.3, -1.0, 0.6, 2.0
+    found = implicit(G, np.array([0.4, 1.7]))
+    assert_near(found, [[0, 0], [0.3, 2.0], [1.0, 0.0], [0.0, 0.0]], bound=1e-14, why="closed form")

@@ -64,6 +64,17 @@ def test_a_circle_is_one_circle_however_unevenly_it_is_divided(seed: int) -> Non
     assert_near(abs(edge.sweep_rad), 2.0 * pi, bound=0.0, why="a full turn")
 
 
+def test_a_finely_divided_arc_between_corners_is_one_arc() -> None:
+    angle = np.linspace(0.0, 1.0, 200)
+    points = np.concatenate([80.0 * np.column_stack([np.cos(angle), np.sin(angle)]), [[0.0, 0.0]]])
+    assert kinds(refitted(points, accuracy=1e-9)) == [CircularArc, Segment, Segment]
+
+
+def test_a_circle_with_noise_within_the_accuracy_is_a_circle() -> None:
+    noise = np.random.default_rng(4).normal(scale=1e-4, size=(200, 2))
+    assert kinds(refitted(ring(200, 2, 25.0) + noise, accuracy=5e-4)) == [CircularArc]
+
+
 def test_a_clockwise_hole_stays_clockwise() -> None:
     found = refitted(ring(16, 3)[::-1], accuracy=1e-9)
     (edge,) = found.edges

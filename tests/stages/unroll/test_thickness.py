@@ -198,12 +198,9 @@ def test_a_sheet_thicker_than_its_bend_is_refused_with_place_and_radius() -> Non
     assert not [f for f in made(PIPE, 3.9, None, "outer").findings if f.fatal]
 
 
-def test_an_apex_is_refused_where_the_neutral_surface_would_pass_it_and_opens_where_it_moves_out() -> None:
-    refused = finding(made(CONE, 0.5, None, "outer"), "offset-past-edge")
-    assert refused.where is not None
-    assert refused.where["u"] == 1.0
+def test_an_apex_opens_where_the_neutral_surface_moves_out() -> None:
     unrolled = made(CONE, 0.5, 0.5, "inner")
-    assert not [f for f in unrolled.findings if f.fatal]
+    assert not unrolled.findings
     edges = surface_figures(unrolled.surface.patches)[0]
     wanted = [FULL_ROUND * 3.2, FULL_ROUND * 0.2]
     assert_relative([edges.c0, edges.c1], wanted, bound=1e-13, why="moved by 0.25 along (0.8, 0.6)")

@@ -1,0 +1,50 @@
+"""The child process that reads one CAD file: `python -c ... FILE SORT`, the faces pickled on stdout.
+
+Whatever the libraries print goes nowhere; what they raise is told as a text.  If they crash, only this process ends.
+"""
+
+import os
+import pickle
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from stages.model.cadface import CadBody
+
+
+@dataclass(frozen=True, slots=True)
+class Unreadable:
+    """Why a file cannot be read."""
+
+    message: str
+
+
+def main() -> None:
+    """Read the file and write what it holds."""
+    file, sort = sys.argv[1:]
+    answer, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
+    with os.fdopen(answer, "wb") as pipe:
+        pipe.write(pickle.dumps(read(file, sort)))
+        pipe.flush()
+        # the libraries' own clean-up takes time and may crash
+        os._exit(0)
+
+
+def read(file: str, sort: str) -> CadBody | Unreadable:
+    """Return the faces of a file, or why there are none."""
+    if sort == "3dm":
+        from pipeline import cad_3dm
+
+        return _tried(lambda: cad_3dm.faces(file))
+    from pipeline import cad_step
+
+    return _tried(lambda: cad_step.faces(file, sort))
+
+
+def _tried(reading: Callable[[], CadBody]) -> CadBody | Unreadable:
+    try:
+        return reading()
+    except Exception as error:
+        return Unreadable(str(error) or type(error).__name__)

@@ -1,0 +1,138 @@
+"""Where the centre line of a strap has inflections that split it, and the longest part that has a strap all the same.
+
+Towards such an inflection the rulings lean over without bound, faster and faster: a part that ends short of it has a
+strap of half width w as long as w |d lambda / ds| < 1, lambda = tau / kappa.  Sampled, its ends by bisection.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from stages.construct.bands import place
+from stages.construct.straprulings import RunsOff, value
+from stages.geometry.arclength import length_between
+from stages.geometry.arrays import Mask, Values, norm
+from stages.geometry.curves import Curve
+from stages.geometry.envelope import Rectifying, closing, speed
+from stages.model.report import Finding
+from stages.model.tolerances import Tolerances
+
+Found = Curve | RunsOff | None
+"""The rulings over a piece, where they run off, or None over a straight one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A part of a chain: from and to, v counted on over the pieces, and its length, mm."""
+
+    start: float
+    end: float
+    length_mm: float
+
+
+def inflection_findings(
+    curves: Sequence[Curve], found: Sequence[Found], half: float, tol: Tolerances
+) -> tuple[Finding, ...]:
+    """Refuse a centre curve along which rulings run off, with its longest part that has a strap of this half width."""
+    for piece, one in enumerate(found):
+        if isinstance(one, RunsOff):
+            return (_finding(piece, one, longest(curves, found, half, tol), half),)
+    return ()
+
+
+def _finding(piece: int, runs_off: RunsOff, best: Stretch | None, half: float) -> Finding:
+    where = place(piece, runs_off.poles[0])
+    message = (
+        f"the centre curve has no curvature at v = {where['v']:.6g}, but torsion: the rulings of a strap run off along it "
+        "there; split there, and let both parts end short of it"
+    )
+    if best is not None:
+        low, high = float(np.ceil(best.start * MILLION) / MILLION), float(np.floor(best.end * MILLION) / MILLION)
+        where |= {"from": low, "to": high}
+        message += (
+            f". The longest part with a strap of half width {half:g} mm runs from v = {low:.6f} to v = {high:.6f}, "
+            f"{best.length_mm:.6g} mm"
+        )
+    return Finding("strap-inflection", message, True, where)
+
+
+MILLION = 1e6
+"""Ends of parts are told in whole millionths, on the side that does."""
+
+
+def longest(curves: Sequence[Curve], found: Sequence[Found], half: float, tol: Tolerances) -> Stretch | None:
+    """Return the longest part of the chain that has a strap of this half width."""
+    parts: list[Stretch] = []
+    for piece, (curve, one) in enumerate(zip(curves, found, strict=True)):
+        follows = piece > 0 and _goes_on(found[piece - 1], one, curves[piece - 1 : piece + 1], half, tol)
+        here = _stretches(piece, curve, one, half)
+        if follows and parts and here and parts[-1].end == here[0].start:
+            before = parts.pop()
+            here[0] = Stretch(before.start, here[0].end, before.length_mm + here[0].length_mm)
+        parts += here
+    return max(parts, key=lambda part: part.length_mm, default=None)
+
+
+def _goes_on(before: Found, after: Found, curves: Sequence[Curve], half: float, tol: Tolerances) -> bool:
+    """Return whether a strap goes on from one piece to the next: onto a straight one it always does."""
+    if after is None:
+        return True
+    if before is None:
+        return False
+    g, h = value(_rulings(before, curves[0]), 1.0), value(_rulings(after, curves[1]), 0.0)
+    return half * min(float(norm(g - h)), float(norm(g + h))) <= tol.join_mm
+
+
+def _rulings(one: Curve | RunsOff, curve: Curve) -> Curve:
+    return Rectifying(curve) if isinstance(one, RunsOff) else one
+
+
+def _stretches(piece: int, curve: Curve, one: Found, half: float) -> list[Stretch]:
+    """Return the parts of one piece that have a strap."""
+    poles = one.poles if isinstance(one, RunsOff) else ()
+    found = []
+    narrow = partial(_narrow, curve, None if one is None else _rulings(one, curve), half, poles)
+    for low, high in pairwise(sorted({0.0, *poles, 1.0})):
+        for start, end in _intervals(narrow, low, high):
+            length = length_between(partial(speed, curve), start, end)
+            found.append(Stretch(piece + start, piece + end, length))
+    return found
+
+
+def _narrow(curve: Curve, ruling: Curve | None, half: float, poles: Sequence[float], v: Values) -> Mask:
+    """Return where the edge of regression stays outside the strap."""
+    if ruling is None:
+        return np.ones(v.size, dtype=bool)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        outside: Mask = np.abs(closing(curve, ruling, v)) * half < 1.0
+    return np.asarray(outside & ~np.isin(v, poles))
+
+
+def _intervals(inside: Callable[[Values], Mask], low: float, high: float) -> list[tuple[float, float]]:
+    """Return the intervals of [low, high] in which a condition holds."""
+    v = low + (high - low) * (1.0 - np.cos(np.linspace(0.0, np.pi, SAMPLES))) / 2.0
+    v[0], v[-1] = low, high
+    held = np.concatenate([[False], inside(v), [False]])
+    starts, ends = (np.flatnonzero(held[1:] & ~held[:-1]), np.flatnonzero(held[:-1] & ~held[1:]) - 1)
+    return [
+        (_edge(inside, v[a], v[a - 1] if a > 0 else v[a]), _edge(inside, v[b], v[b + 1] if b + 1 < v.size else v[b]))
+        for a, b in zip(starts, ends, strict=True)
+    ]
+
+
+SAMPLES = 257
+
+
+def _edge(inside: Callable[[Values], Mask], held: float, not_held: float) -> float:
+    """Return the last place at which a condition holds, between one where it does and one where it does not."""
+    for _ in range(BISECTIONS):
+        middle = (held + not_held) / 2.0
+        held, not_held = (middle, not_held) if bool(inside(np.array([middle]))[0]) else (held, middle)
+    return held
+
+
+BISECTIONS = 40
+"""An interval of 1/128 is then below rounding."""

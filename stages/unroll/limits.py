@@ -1,0 +1,47 @@
+"""What refuses a pattern: strain beyond the class that the job accepts, and area that is covered twice."""
+
+from stages.geometry.cover import doubled
+from stages.model.pattern import Contour
+from stages.model.report import Finding, Metric
+from stages.model.tolerances import STRAIN_LIMIT, Class, Tolerances, class_by_strain
+from stages.unroll import outline
+
+
+def strain_findings(strain: Metric, by_warp: Class, tol: Tolerances) -> tuple[Finding, ...]:
+    """Refuse a part whose strain is of a worse class than the job accepts."""
+    if strain.passed:
+        return ()
+    value = float(strain.value or 0.0)
+    message = (
+        f"flattening strains the sheet by {value:.3g}, allowed {STRAIN_LIMIT[tol.accept]:g} "
+        f"(accept = {tol.accept!r}); by warp it is {by_warp!r}, by strain {class_by_strain(value) or 'no class'!r}"
+    )
+    return (Finding("strain", message, True, strain.where),)
+
+
+def overlap(outer: Contour) -> Metric:
+    """Return the area that the pattern covers twice: proved where the lines and arcs that are cut cover none.
+
+    Where edges meet at almost no angle, arcs fitted to them cross by less than the chord: what goes away on finer arcs
+    (as chord^1.5, where two edges part like a parabola) is not the pattern's own.
+    """
+    allowed = outer.chord_mm**2
+    covered = doubled(outer.path)
+    if covered == 0.0:
+        return Metric("overlap_mm2", 0.0, "mm2", "proved", allowed)
+    for times in FINER:
+        if covered > allowed:
+            covered = min(covered, doubled(outline.contour(outer.edges, outer.chord_mm / times).path))
+    return Metric("overlap_mm2", covered, "mm2", "sampled", allowed)
+
+
+FINER = 4.0, 16.0
+"""How many times as fine the arcs are on which an overlap is looked at again."""
+
+
+def overlap_findings(covered: Metric, remedy: str) -> tuple[Finding, ...]:
+    """Refuse a pattern that cannot be cut from one sheet; remedy: where to divide the part."""
+    if covered.passed:
+        return ()
+    message = f"the flat pattern covers {covered.value:.4g} mm2 twice: divide the part {remedy}"
+    return (Finding("flat-overlap", message, fatal=True),)

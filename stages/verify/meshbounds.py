@@ -1,0 +1,163 @@
+"""How far a mesh is from developable: equivalent warp and strain, each with the least and the largest that it may be.
+
+Warp: the curvature averaged over a region is uncertain by `DEVIATIONS` standard deviations of what the mesh's noise
+makes of it (found by adding that noise once more), and by what a fit of one degree less changes it, times how much
+better the fit of full degree is.  Strain: averaged over a cell of triangles it is uncertain by as many standard
+errors; where chords had to be taken for the lengths on the surface, also by what these would have differed.  The
+largest warp is that over the large regions, which are the surest; the least is that over any.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.geometry.arap import strain_tensors
+from stages.geometry.arrays import Indices, Points2, Values
+from stages.geometry.mesh import Mesh
+from stages.geometry.meshcurvature import Regions, defects, means, regions, ruling_lengths, shares, spread
+from stages.geometry.meshfit import DEGREE, Stars, SurfaceFit, fitted
+from stages.geometry.meshflat import MeshMap, noise, resting
+from stages.geometry.meshlengths import chords, curved, mended
+from stages.geometry.meshtopology import Edges
+
+DEVIATIONS = 4.0
+"""Of some fifty regions one in three hundred meshes has one further off by chance."""
+CELL = 64
+"""Triangles to a cell of strain, at least half of that: standard errors a tenth of the scatter."""
+MARGIN = 3.0
+"""The change from degree 3 to 4, times the ratio of what they leave, is what degree 4 leaves to this factor."""
+LOW = 0.25
+"""Quartile of the residuals that is taken for noise: where the surface is sharp they are not noise."""
+SEED = 1
+"""Of the noise that is added: the same mesh gets the same verdict."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A quantity: the least, the likely and the largest value, and the vertex where it is likely largest."""
+
+    least: float
+    value: float
+    largest: float
+    vertex: int | None = None
+
+
+UNKNOWN = Bound(0.0, np.inf, np.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Studied:
+    """A mesh with all that was found of it."""
+
+    mesh: Mesh
+    edges: Edges
+    around: tuple[Stars, ...]
+    fit: SurfaceFit
+    flat: MeshMap
+
+
+def defect_sum(studied: Studied) -> float:
+    """Return the integral of the curvature over all vertices inside, rad."""
+    return float(_defects(studied, studied.mesh, studied.fit).sum())
+
+
+def _defects(studied: Studied, mesh: Mesh, fit: SurfaceFit) -> Values:
+    edges = studied.edges
+    lengths = curved(mesh.vertices, edges.ends, fit)[0]
+    return defects(mesh, edges, mended(lengths, chords(mesh.vertices, edges.ends), edges.of_half))
+
+
+def warp(studied: Studied) -> Bound:
+    """Return the equivalent warp, rad; unknown where no region fits into the mesh."""
+    flat = studied.flat.positions
+    found = regions(studied.edges, flat)
+    if not len(found.centres):
+        return UNKNOWN
+    mean, doubt = _curvatures(studied, found)
+    length = ruling_lengths(studied.mesh, studied.edges, flat, studied.fit.normals, found)
+    size = np.abs(mean)
+    likely = length * np.sqrt(size)
+    large = found.scale == 0
+    worst = int(np.argmax(np.where(large, likely, -1.0)))
+    return Bound(
+        float((length * np.sqrt(np.maximum(size - doubt, 0.0))).max()), float(likely[worst]),
+        float((length * np.sqrt(size + doubt))[large].max()), int(found.centres[worst]),
+    )  # fmt: skip
+
+
+def _curvatures(studied: Studied, found: Regions) -> tuple[Values, Values]:
+    """Return the mean curvature of every region and how far off it may be, 1/mm2."""
+    area = shares(studied.mesh, studied.edges, studied.flat.lengths)
+    mean = means(found, _defects(studied, studied.mesh, studied.fit), area)
+    noisier = _noisier(studied)
+    moved = means(found, _defects(studied, noisier, fitted(noisier, studied.around)), area) - mean
+    rougher = (
+        means(found, _defects(studied, studied.mesh, fitted(studied.mesh, studied.around, DEGREE - 1)), area) - mean
+    )
+    better = float(np.median(studied.fit.residual / np.maximum(studied.fit.coarser, np.finfo(np.float64).tiny)))
+    return mean, DEVIATIONS * spread(found, moved) + min(MARGIN * better, 1.0) * np.abs(rougher)
+
+
+def _noisier(studied: Studied) -> Mesh:
+    """Return the mesh with as much noise added across the surface as was found."""
+    source = np.random.default_rng(SEED)
+    heights = float(np.quantile(studied.fit.residual, LOW)) * source.standard_normal(len(studied.mesh.vertices))
+    return Mesh(studied.mesh.vertices + heights[:, None] * studied.fit.normals, studied.mesh.faces)
+
+
+def strain(studied: Studied) -> Bound:
+    """Return the largest principal strain, averaged over cells of many triangles."""
+    mesh, flat = studied.mesh, studied.flat
+    rest = resting(mesh, studied.edges, flat.lengths)
+    tensors = strain_tensors(rest, flat.positions)
+    cell = cells(flat.positions[mesh.faces].mean(axis=1), CELL)
+    count = np.bincount(cell)
+    weight = rest.area / np.bincount(cell, rest.area)[cell]
+    mean = np.stack([np.bincount(cell, weight * part) for part in tensors.T], axis=1)
+    away = ((tensors - mean[cell]) ** 2).sum(axis=1)
+    error = np.sqrt(np.bincount(cell, away) / np.maximum(count - 1, 1) / count)
+    size = np.abs((mean[:, 0] + mean[:, 2]) / 2.0) + np.hypot((mean[:, 0] - mean[:, 2]) / 2.0, mean[:, 1])
+    worst = int(np.argmax(size))
+    doubt = DEVIATIONS * error + _chord_error(studied) + _lengthening(studied)
+    vertex = int(mesh.faces[np.flatnonzero(cell == worst)[0], 0])
+    return Bound(max(float((size - doubt).max()), 0.0), float(size[worst]), float((size + doubt).max()), vertex)
+
+
+def strain_rms(studied: Studied) -> float:
+    """Return the root of the mean over the area of (e1^2 + e2^2) / 2, triangle by triangle, noise included."""
+    area = resting(studied.mesh, studied.edges, studied.flat.lengths).area
+    return float(np.sqrt(area @ (studied.flat.strains**2).mean(axis=1) / area.sum()))
+
+
+def _chord_error(studied: Studied) -> float:
+    """Return by how much of themselves the lengths would differ on the fitted surface, if they are chords."""
+    straight = chords(studied.mesh.vertices, studied.edges.ends)
+    longer = curved(studied.mesh.vertices, studied.edges.ends, studied.fit)[0] / straight - 1.0
+    taken = studied.flat.lengths == straight
+    return float(np.quantile(np.abs(longer[taken]), MOST)) if taken.mean() > 1.0 - MOST else 0.0
+
+
+def _lengthening(studied: Studied) -> float:
+    """Return by how much of themselves noise makes edges longer: s^2 / L^2 on average, s the deviation of each end."""
+    height = noise(studied.fit)
+    return MARGIN * float(np.quantile((height / studied.flat.lengths) ** 2, MOST)) if np.isfinite(height) else np.inf
+
+
+MOST = 0.9
+"""A share of the edges: single fits may be arbitrarily far off."""
+
+
+def cells(places: Points2, most: int) -> Indices:
+    """Return the cell of each place: halved at the median across the longer side until no cell has more than `most`."""
+    cell = np.zeros(len(places), dtype=np.int64)
+    stack, count = [np.arange(len(places))], 0
+    while stack:
+        part = stack.pop()
+        if len(part) <= most:
+            cell[part] = count
+            count += 1
+            continue
+        axis = int(np.argmax(np.ptp(places[part], axis=0)))
+        order = part[np.argsort(places[part, axis], kind="stable")]
+        stack += [order[: len(order) // 2], order[len(order) // 2 :]]
+    return cell

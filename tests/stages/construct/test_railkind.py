@@ -1,0 +1,197 @@
+"""Rails as a part among others: divided, joined, moved, folded; rails that meet, rails moved along, frames."""
+
+from fractions import Fraction
+from math import acos, degrees, sqrt
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from stages.construct.curves import chain
+from stages.construct.railkind import rail_strip
+from stages.geometry.curves import bezier
+from stages.geometry.railcorners import Leg
+from stages.geometry.railfold import fold_at, folds_between, smallest_folds
+from stages.geometry.railstrip import closed_bounds
+from stages.model.rails import Rails
+from stages.model.surface import RuledSurface
+from stages.model.tolerances import Tolerances
+from stages.unroll import unroll
+from stages.unroll.divide import blanks
+from tests.near import assert_near, assert_relative
+from tests.parts import Passage, Table, passage, read
+
+HELICES: tuple[Table, Table] = (
+    {"helix": {"radius": 100, "pitch": 60, "turns": 1.5}},
+    {"helix": {"radius": 160, "pitch": 60, "turns": 1.5}},
+)
+CURVED = [[0, 0, 0], [40, 80, 0], [120, -40, 20], [160, 20, 12]]
+
+
+def rails(a: Table, b: Table, **keys: object) -> Table:
+    return {"kind": "rails", "rail_a": a, "rail_b": b} | keys
+
+
+def curves(a: list[list[float]], b: list[list[float]], **keys: object) -> Table:
+    return rails({"bezier": a}, {"bezier": b}, **keys)
+
+
+def moved(points: list[list[float]], by: tuple[float, float, float]) -> list[list[float]]:
+    return [[x + d for x, d in zip(point, by, strict=True)] for point in points]
+
+
+def area(made: Passage) -> float:
+    value = made.side("surface")["area"]
+    assert isinstance(value, float)
+    return value
+
+
+def kinds(made: Passage) -> list[str]:
+    found = made.reports["construct"].detail["pieces"]
+    assert isinstance(found, list)
+    return [row["kind"] for row in found]
+
+
+def frame(half: float, z: float) -> Table:
+    corners = [[half, -half, z], [half, half, z], [-half, half, z], [-half, -half, z]]
+    return {"polyline": [*corners, corners[0]]}
+
+
+def test_a_strip_that_would_overlap_itself_is_divided_into_blanks() -> None:
+    whole = passage(rails(*HELICES), cut="auto")
+    assert whole.codes("unroll", fatal=True) == ["flat-overlap"]
+    assert whole.certificate is not None
+    assert isinstance(whole.surface, RuledSurface)
+    made = [unroll(blank, Tolerances()) for blank in blanks(whole.certificate, Tolerances())]
+    assert len(made) > 1
+    assert all(outcome.product is not None for outcome in made)
+    sides = [outcome.report.detail["surface"] for outcome in made]
+    areas = [side["area"] for side in sides if isinstance(side, dict)]
+    assert_relative([sum(areas)], [area(whole)], bound=1e-12, why="the blanks are the part")
+    assert max(float(outcome.report.metric("metric_error").value or 0.0) for outcome in made) < 1e-11
+
+
+def test_rails_join_to_a_cylinder_as_pieces_of_a_strip() -> None:
+    """A quarter pipe from two quarter circles, and a plane that goes on from its last ruling."""
+    arc: Table = {"arc": {"center": [0, 0, 0], "radius": 50, "normal": [0, 0, 1], "start": 0, "end": 90}}
+    over: Table = {"arc": {"center": [0, 0, 80], "radius": 50, "normal": [0, 0, 1], "start": 0, "end": 90}}
+    plane = {"kind": "ruled", "c0": {"line": [[-60, 50, 0], [0, 50, 0]]}, "c1": {"line": [[-60, 50, 80], [0, 50, 80]]}}
+    made = passage({"kind": "strip", "pieces": [rails(arc, over), plane]})
+    assert made.refused_by is None
+    assert made.value("construct", "join_normal_deg") < 1e-12
+    assert_relative([area(made)], [80.0 * (25.0 * np.pi + 60.0)], bound=1e-13, why="closed form")
+
+
+def test_moving_and_turning_the_rails_moves_the_strip() -> None:
+    """Turned by 3-4-5 triangles about two axes, exactly, and run from the other end."""
+    a, b = CURVED, moved([[1.2 * x, y, z] for x, y, z in CURVED], (-10, 30, 90))
+    still = passage(curves(a, b))
+    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    turn = turn @ np.array([[1.0, 0.0, 0.0], [0.0, 0.28, -0.96], [0.0, 0.96, 0.28]])
+    ends = [np.round(np.array(points) @ turn.T + [500, -200, 30], 9)[::-1] for points in (a, b)]
+    other = passage(curves(*(points.tolist() for points in ends)))
+    assert still.refused_by == other.refused_by
+    if still.refused_by is None:
+        assert_relative([area(other)], [area(still)], bound=1e-10, why="corners rounded to 1e-9")
+        assert kinds(other)[::-1] == kinds(still)
+
+
+@pytest.mark.parametrize("by", [(12, 0, 80), (0, 5, 60)])
+def test_a_rail_moved_along_bounds_a_cylinder_through_its_inflections(by: tuple[float, float, float]) -> None:
+    """Another arc of F = 0 crosses at each inflection.  Area: |by| times the width of the curve seen along it."""
+    made = passage(curves(CURVED, moved(CURVED, by)))
+    assert set(kinds(made)) == {"ruled"}
+    assert_near(made.value("verify", "max_warp_deg"), 0.0, bound=1e-9, why="parallel rulings")
+    x, d = [mp.matrix(point) for point in CURVED], mp.matrix(by)
+
+    def width(t: mp.mpf) -> mp.mpf:
+        r1 = 3 * ((x[1] - x[0]) * (1 - t) ** 2 + 2 * (x[2] - x[1]) * t * (1 - t) + (x[3] - x[2]) * t**2)
+        along = (r1.T * d)[0] ** 2
+        return mp.sqrt((r1.T * r1)[0] * (d.T * d)[0] - along)
+
+    assert_relative([area(made)], [float(mp.quad(width, [0, 0.25, 0.5, 0.75, 1]))], bound=1e-12, why="mpmath")
+
+
+def test_a_curve_and_its_larger_image_bound_one_cone() -> None:
+    made = passage(curves(CURVED, moved([[2 * x, 2 * y, 2 * z] for x, y, z in CURVED], (40, 0, 80))))
+    assert set(kinds(made)) == {"ruled"}
+    assert made.value("verify", "max_warp_deg") < 1e-9
+
+
+def test_rails_that_share_both_end_points_bound_a_lens() -> None:
+    """Two parabolas over one chord in planes at right angles: parallel rulings, t = s; area by mpmath."""
+    made = passage(curves([[0, 0, 0], [2, 2, 0], [4, 0, 0]], [[0, 0, 0], [2, 0, 2], [4, 0, 0]]))
+    assert kinds(made) == ["ruled"]
+    lens = mp.quad(lambda t: mp.sqrt(2) * 4 * t * (1 - t) * mp.sqrt(16 + (4 - 8 * t) ** 2 / 2), [0, 0.5, 1])
+    assert_relative([area(made)], [float(lens)], bound=1e-13, why="quadrature")
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_rails_that_share_one_end_point_have_a_strip_from_cones_there(backwards: bool) -> None:
+    a, b = [[0, 0, 0], [1, 2, 0], [3, -1, 0.5], [4, 0.5, 2]], [[0, 0, 0], [1, 1, 2], [2.5, -1, 1.5], [4, 0.5, 3]]
+    step = -1 if backwards else 1
+    made = passage(curves(moved(a, (70, 30, -10))[::step], moved(b, (70, 30, -10))[::step]))
+    assert made.refused_by is None
+    assert made.value("verify", "max_warp_deg") < 1e-9
+    assert made.value("construct", "join_normal_deg") < 1e-6
+
+
+def test_two_frames_fold_at_their_corners_alone_and_the_folds_are_bend_lines() -> None:
+    """A pyramid's stump: normals (3, 0, 1) / sqrt 10 turn by acos(1/10) at each corner; the fourth is the seam."""
+    made = passage(rails(frame(2, 0), frame(1, 3), folds="allow"))
+    assert_relative([area(made)], [4 * 3 * sqrt(10)], bound=1e-14, why="four trapezia")
+    assert made.pattern is not None
+    rows = made.reports["unroll"].detail["bends"]
+    assert isinstance(rows, list)
+    assert_near([row["angle_deg"] for row in rows], [degrees(acos(0.1))] * 3, bound=1e-12, why="closed form")
+    assert [row["fold"] for row in rows] == [True] * 3
+    bends = [mark for mark in made.pattern.marks if mark.layer in {"BEND_UP", "BEND_DOWN"}]
+    assert len({mark.layer for mark in bends}) == 1
+    lengths = [float(np.hypot(*(mark.path.vertices[1] - mark.path.vertices[0]))) for mark in bends]
+    assert_near(lengths, [sqrt(11)] * 3, bound=1e-13, why="from corner (2, 2, 0) to corner (1, 1, 3)")
+
+
+def test_frames_are_refused_without_folds() -> None:
+    made = passage(rails(frame(2, 0), frame(1, 3)))
+    assert made.codes("construct", fatal=True) == ["no-smooth-strip"]
+    assert "3 folds, the largest 84.2608 deg" in made.reports["construct"].findings[0].message
+
+
+def test_closed_rails_with_a_strip_have_no_lower_bound() -> None:
+    spec = read(rails(frame(1.5, 0), {"circle": {"center": [0, 0, 2], "radius": 1, "normal": [0, 0, 1]}})).surface
+    assert isinstance(spec, Rails)
+    assert [bound.fold_rad for bound in closed_bounds(chain(spec.rail_a).curves, chain(spec.rail_b).curves)] == [0, 0]
+
+
+def test_folds_are_made_smaller_by_moving_their_corners() -> None:
+    """Two skew lines, with a fold put in the middle of a way with three legs: it ends at the best the legs allow."""
+    a, b = (
+        bezier([[Fraction(x) for x in p] for p in line]) for line in (((0, 0, 0), (4, 0, 0)), ((0, 0, 2), (3, 2, 2)))
+    )
+    middle = [[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [1.0, 1.0]]
+    ways = [np.array(middle[k : k + 2]) for k in range(3)]
+    parts = (Leg("on_a", ways[0], True), Leg("on_b", ways[1], True), Leg("on_a", ways[2]))
+    both = parts, smallest_folds(parts, (a,), (b,))
+    squares = [sum(fold**2 for fold in folds_between(legs, (a,), (b,))) for legs in both]
+    assert squares[1] < squares[0]
+    # along the one parameter that is free the sum is nowhere smaller than what was found
+    places = [[np.array([x, s]) for s in (0.0, 1.0)] for x in np.linspace(0.0, 1.0, 101)[1:-1]]
+    every = [sum(fold_at(place, (0, 0), (a,), (b,)) ** 2 for place in pair) for pair in places]
+    assert squares[1] <= min(every)
+
+
+def test_a_least_radius_takes_a_strip_without_cones_where_there_is_one() -> None:
+    """The best way between the moved rails has no cone; between others every way has one, and that is refused."""
+    straight = read(curves(CURVED, moved(CURVED, (12, 0, 80)), min_radius=1)).surface
+    assert isinstance(straight, Rails)
+    built = rail_strip(straight, Tolerances())
+    assert [finding.code for finding in built.findings] == []
+    coned = with_radius(rails(frame(1.5, 0), {"circle": {"center": [0, 0, 2], "radius": 1, "normal": [0, 0, 1]}}))
+    assert coned == ["apex-on-rail", "min-radius"]
+
+
+def with_radius(surface: Table) -> list[str]:
+    """Return the findings on a surface with a least radius of 1 mm."""
+    spec = read(surface | {"min_radius": 1}).surface
+    assert isinstance(spec, Rails)
+    return [finding.code for finding in rail_strip(spec, Tolerances()).findings]
