@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from stages.construct.features import Placement, placed, placement
 from stages.construct.meshfaults import (
     crossing_findings,
     place,
@@ -19,7 +20,10 @@ from stages.construct.meshfaults import (
     surface_findings,
     text,
 )
-from stages.construct.meshrecovery import recovered
+from stages.construct.meshfeatures import placed_on_mesh
+from stages.construct.meshrecovery import Recovery, recovered
+from stages.construct.plain import PlaneFrame
+from stages.construct.plates import placed_in_plane
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Numbers, Points3, norm
 from stages.geometry.mesh import Mesh
@@ -38,9 +42,10 @@ from stages.geometry.meshtopology import (
 )
 from stages.model.material import Part
 from stages.model.meshes import MeshFile
+from stages.model.part import PartSpec
 from stages.model.report import Finding, Metric, Outcome, StageReport, Where
 from stages.model.scalars import floats
-from stages.model.surface import MeshSurface, Surface
+from stages.model.surface import MeshSurface, RuledSurface, Surface
 from stages.model.tolerances import Tolerances
 
 SEAM_OFF = 3.0
@@ -86,6 +91,9 @@ def blanks(part: Part) -> tuple[Part, ...]:
     message = f"the file holds {count} pieces that do not hang together: each is a blank of its own"
     done = (finding for finding in repair_findings(repair) if not finding.fatal)
     remarks = (*part.remarks, Finding("mesh-pieces", message, False, {"pieces": count}), *done)
+    if part.spec.has_features:
+        which = "holes, marks and notches: which of the pieces is meant is not said; give that piece a file of its own"
+        remarks = (*remarks, Finding("mesh-pieces", which, fatal=True))
     return tuple(
         replace(part, spec=part.spec.blank(n), body=part_of(mesh, run), remarks=remarks)
         for n, run in enumerate(runs, 1)
@@ -106,13 +114,25 @@ def mesh_surface(part: Part, spec: MeshFile, tol: Tolerances) -> Outcome[Surface
     if found is None:
         return report.outcome(part, None)
     made = MeshSurface(part, found.mesh, found.loops, _size(found.mesh), found.seams)
-    if spec.recognise:
-        exact = recovered(part, made.mesh, straight_loops(made), tol)
-        if exact is not None:
-            report.metrics += exact.metrics
-            report.detail |= exact.detail
-            return report.outcome(part, exact.surface)
-    return report.outcome(part, made)
+    exact = recovered(part, made.mesh, straight_loops(made), tol) if spec.recognise else None
+    if exact is not None:
+        report.metrics += exact.metrics
+        report.detail |= exact.detail
+    features = _features(part.spec, made, exact, tol)
+    report.metrics += features.metrics
+    report.findings += features.findings
+    return report.outcome(part, replace(made if exact is None else exact.surface, features=features.features))
+
+
+def _features(spec: PartSpec, made: MeshSurface, exact: Recovery | None, tol: Tolerances) -> Placement:
+    """Return the features of the part on what its mesh turned out to be."""
+    if exact is None:
+        return placed_on_mesh(spec, made.mesh, tol)
+    if isinstance(exact.surface, RuledSurface):
+        return placed(spec, exact.surface.patches, tol)
+    origin, x, y = exact.frame if exact.frame is not None else np.eye(3)
+    frame = PlaneFrame(origin, x, y, 0.0)
+    return placement(spec, lambda name, feature: placed_in_plane(name, feature, frame, tol), tol)
 
 
 def straight_loops(surface: MeshSurface) -> tuple[Numbers, ...]:

@@ -36,7 +36,7 @@ def laid(part: Part, links: Sequence[Chain], frame: PlaneFrame, tol: Tolerances)
     holes = tuple(in_plane(link, frame, clockwise=True) for link in links[1:])
     if contours.area(outline) <= 0.0:
         findings.append(Finding("no-area", "the outline encloses no area", fatal=True))
-    features = placement(part.spec, lambda name, feature: _placed(name, feature, frame, tol), tol)
+    features = placement(part.spec, lambda name, feature: placed_in_plane(name, feature, frame, tol), tol)
     findings += features.findings
     report = StageReport("construct", part.name, (*metrics, planar, *features.metrics), tuple(findings))
     points = np.concatenate([edge.at(np.linspace(0.0, 1.0, 33)) for edge in outline])
@@ -52,7 +52,7 @@ def _contour_findings(index: int, link: Chain, tol: Tolerances) -> list[Finding]
     return [Finding("open-contour", f"{name} does not close: {gap:.4g} mm are missing", fatal=True)]
 
 
-def _placed(name: str, spec: Feature, frame: PlaneFrame, tol: Tolerances) -> Placed:
+def placed_in_plane(name: str, spec: Feature, frame: PlaneFrame, tol: Tolerances) -> Placed:
     """Return a feature in the plane of the plate; what is given in space is taken along its normal."""
     if isinstance(spec, CurveHole | CurveMark):
         link = chain(spec.curve)

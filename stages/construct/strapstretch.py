@@ -46,8 +46,8 @@ def inflection_findings(
 def _finding(piece: int, runs_off: RunsOff, best: Stretch | None, half: float) -> Finding:
     where = place(piece, runs_off.poles[0])
     message = (
-        f"the centre curve has no curvature at v = {where['v']:.6g}, but torsion: the rulings of a strap run off along it "
-        "there; split there, and let both parts end short of it"
+        f"the centre curve has no curvature at v = {where['v']:.6g}, but torsion: the rulings of a strap run off along "
+        "it; split there, and let both parts end short of it"
     )
     if best is not None:
         low, high = float(np.ceil(best.start * MILLION) / MILLION), float(np.floor(best.end * MILLION) / MILLION)

@@ -17,7 +17,6 @@ from stages.geometry.curves import Curve, restrict
 from stages.geometry.railbound import Bound, least_fold, least_fold_round
 from stages.geometry.railchords import shares_an_end
 from stages.geometry.railcorners import TINY, Leg
-from stages.geometry.railfold import smallest_folds
 from stages.geometry.railgraph import Rules, way
 from stages.geometry.railpath import legs, solved
 from stages.geometry.railzero import Field, Zeros, field, zeros
@@ -72,8 +71,7 @@ def _on_lattices(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Strip 
         if not best.stops:
             return None
         try:
-            made = solved(legs(best.stops), rail_a, rail_b)
-            return Strip(smallest_folds(made, rail_a, rail_b), rail_a, rail_b)
+            return Strip(solved(legs(best.stops), rail_a, rail_b), rail_a, rail_b)
         except NoSolutionError:
             continue
     return None

@@ -153,18 +153,34 @@ def name_of(feature: Feature, number: int) -> str:
     return feature.name or (f"notch-{number}" if isinstance(feature, NotchSpec) else f"mark-{number}")
 
 
+Ground = Literal["plate", "strip", "mesh", "face"]
+"""What features are put on: a face of a CAD file may turn out to be a plate, a strip, or part of one."""
+
+
 def feature_troubles(
-    holes: Sequence[HoleSpec], marks: Sequence[MarkSpec], notches: Sequence[NotchSpec], *, plate: bool
+    holes: Sequence[HoleSpec], marks: Sequence[MarkSpec], notches: Sequence[NotchSpec], *, on: Ground
 ) -> Iterator[Trouble]:
     """Yield what the features of a part break that only shows beside its kind of surface."""
     for key, features in (("hole", holes), ("mark", marks)):
         for i, feature in enumerate(features):
-            for trouble in _troubles(feature, plate=plate):
+            for trouble in _troubles(feature, plate=on == "plate"):
                 yield trouble._replace(key=f"{key}[{i}].{trouble.key}")
+            if on == "mesh" and _in_plane(feature):
+                place = "curve" if isinstance(feature, CurveHole | CurveMark) else "at"
+                yield Trouble(f"{key}[{i}].{place}", "two numbers: a mesh has no u and v", "give points as [x, y, z]")
     for i, notch in enumerate(notches):
-        if (notch.edge == "outline") != plate:
-            hint = "a plate has outline only" if plate else "one of c0, c1, start, end"
+        if (notch.edge == "outline") != (on != "strip") and on != "face":
+            hint = "one of c0, c1, start, end" if on == "strip" else f"a {on} has outline only"
             yield Trouble(f"notch[{i}].edge", f'no edge "{notch.edge}" on this kind', hint)
+
+
+def _in_plane(feature: HoleSpec | MarkSpec) -> bool:
+    """Return whether a feature is given by two coordinates."""
+    if isinstance(feature, RulingMarks):
+        return False
+    if isinstance(feature, CurveHole | CurveMark):
+        return is_flat(feature.curve)
+    return len(feature.at) == len("uv")
 
 
 def _troubles(feature: HoleSpec | MarkSpec, *, plate: bool) -> Iterator[Trouble]:

@@ -17,7 +17,7 @@ from stages.model.ducts import Elbow, Saddle, Tee, Transition, is_set
 from stages.model.envelopes import Ribbon, Strap
 from stages.model.face import Face
 from stages.model.faces import FaceFile
-from stages.model.features import HoleSpec, MarkSpec, NotchSpec, feature_troubles
+from stages.model.features import Ground, HoleSpec, MarkSpec, NotchSpec, feature_troubles
 from stages.model.forming import BendSpec
 from stages.model.meshes import MeshFile
 from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled, bad_fraction
@@ -208,14 +208,11 @@ class PartSpec(Table, frozen=True, kw_only=True):
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield what holes, marks and notches break on this kind of surface."""
-        yield from feature_troubles(self.hole, self.mark, self.notch, plate=isinstance(self.surface, Flat))
+        yield from feature_troubles(self.hole, self.mark, self.notch, on=_ground(self.surface))
         if self.cut == "auto" and isinstance(self.surface, Flat):
             yield Trouble("cut", "a plate has no rulings to be divided along", 'leave it out, or write "none"')
         if self.bend and isinstance(self.surface, Flat):
             yield Trouble("bend", "a plate does not bend", "leave it out")
-        for key in ("hole", "mark", "notch", "bend") if isinstance(self.surface, MeshFile) else ():
-            if getattr(self, key):
-                yield Trouble(key, "a mesh has no u and v to place it by", "leave it out, or give the part by a kind")
         if self.cut == "auto" and isinstance(self.surface, MeshFile):
             yield Trouble("cut", "a mesh is cut along its seam", 'leave it out, or write "none"')
         if len(self.bend) > 1:
@@ -224,6 +221,23 @@ class PartSpec(Table, frozen=True, kw_only=True):
             if getattr(self, key):
                 yield Trouble(key, "which of the blanks is meant is not said", "give that blank as a part of its own")
 
+    @property
+    def has_features(self) -> bool:
+        """Whether anything is cut into it or drawn on it."""
+        return bool(self.hole or self.mark or self.notch)
+
     def blank(self, number: int) -> "PartSpec":
         """Return the specification of one piece of the divided part, `<part>.<n>`."""
         return replace(self, name=f"{self.name}.{number}", cut="none")
+
+
+def _ground(surface: SurfaceSpec) -> Ground:
+    """Return what the features of a part are put on."""
+    match surface:
+        case Flat():
+            return "plate"
+        case MeshFile():
+            return "mesh"
+        case FaceFile():
+            return "face"
+    return "strip"

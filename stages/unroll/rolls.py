@@ -2,7 +2,8 @@
 
 At stations of equal turning: how far the sheet has been fed (across the rulings, at their middles), the inside radius
 at both ends of the ruling, and the tilt of the roll.  Along a ruling the radius is linear; the cone that touches there
-has the half-angle atan((rho1 - rho0) / |p|), which is the angle between ruling and roll axis.
+has the half-angle atan((rho1 - rho0) / |p|), which is the angle between ruling and roll axis.  At an apex the inside radius is
+0: no tool leaves that, so the row has no tool radius at that end, and says so.
 
 Springback of an elastic, perfectly plastic sheet [1]_: bent to the radius R of its middle, it springs back to R_f,
 
@@ -97,8 +98,18 @@ def _rows(bent: Bent, stations: list[tuple[float, str]]) -> list[dict[str, objec
             "cone_tilt_deg": tilted,
         }
         tools = [tool_radius(bent.material, radius) for radius in radii]
-        rows.append(row | {"tool_radius_mm": tools, "tool_radius_by": ESTIMATE} if any(tools) else row)
+        row |= {"tool_radius_mm": tools, "tool_radius_by": ESTIMATE} if any(tools) else {}
+        rows.append(row | ({"note": TOO_SHARP} if _too_sharp(radii, tools) else {}))
     return rows
+
+
+TOO_SHARP = "too sharp for a tool at the end without a tool radius, as at an apex: it is creased or hammered there"
+
+
+def _too_sharp(radii: list[float | None], tools: list[float | None]) -> bool:
+    """Return whether an end has a radius and no tool: it is 0, or so small that springing back leaves more."""
+    missing = (tool is None for tool in tools) if any(tools) else (radius == 0.0 for radius in radii)
+    return any(none and radius is not None for none, radius in zip(missing, radii, strict=True))
 
 
 def _tilts(bent: Bent, at: Values) -> Values:
@@ -116,12 +127,16 @@ def _tilts(bent: Bent, at: Values) -> Values:
 
 
 def tool_radius(material: Material, inside_mm: float | None) -> float | None:
-    """Return the inside radius to bend to, so that the given one is left, mm; None where nothing is known of it."""
+    """Return the inside radius to bend to, so that the given one is left, mm.
+
+    None where nothing is known of it, and where even a tool of no radius leaves more.
+    """
     share = elastic_share(material, inside_mm)
     if share is None or inside_mm is None:
         return None
     half = (material.thickness_mm or 0.0) / 2.0
-    return (inside_mm + half) * ratio_of(share) - half
+    radius = (inside_mm + half) * ratio_of(share) - half
+    return radius if radius > 0.0 else None
 
 
 def elastic_share(material: Material, inside_mm: float | None) -> float | None:

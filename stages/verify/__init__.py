@@ -11,7 +11,7 @@ flattening: `unroll` may still refuse.
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.model.report import Evidence, Finding, Metric, Outcome, StageReport, Where
+from stages.model.report import Evidence, Metric, Outcome, StageReport, Where
 from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
 from stages.verify import sampled
@@ -19,6 +19,7 @@ from stages.verify.bending import bending
 from stages.verify.crossing import crossings
 from stages.verify.examined import Examined, examine
 from stages.verify.findings import rejection, singular_findings
+from stages.verify.meshes import verdict
 from stages.verify.sampled import Extreme
 
 __all__ = ["verify"]
@@ -31,7 +32,7 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
     if isinstance(surface, Plate):
         return _plate(surface)
     if isinstance(surface, MeshSurface):
-        return _mesh(surface)
+        return _mesh(surface, tol)
     examined = [examine(patch, i) for i, patch in enumerate(surface.patches)]
     proved = all(one.proved for one in examined)
     bends, bent = bending(surface)
@@ -59,11 +60,13 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
     return Outcome(Certificate(surface, reached, proved), report)
 
 
-def _mesh(surface: MeshSurface) -> Outcome[Certificate | None]:
-    """Refuse a mesh that was not recognised."""
-    message = "the mesh is no surface that is recognised (plane, cylinder, cone); what else it may be is not judged"
-    report = StageReport("verify", surface.part.name, (), (Finding("mesh-not-judged", message, fatal=True),))
-    return Outcome(None, report)
+def _mesh(surface: MeshSurface, tol: Tolerances) -> Outcome[Certificate | None]:
+    """Return the certificate of a mesh that was not recognised: judged by the map that it will be cut by."""
+    judged = verdict(surface, tol)
+    report = StageReport("verify", surface.part.name, judged.metrics, judged.findings, {"class": judged.reached})
+    if judged.reached == "rejected" or judged.reached == "inconclusive" or not report.passed:  # noqa: PLR1714
+        return Outcome(None, report)
+    return Outcome(Certificate(surface, judged.reached, proved=False, flat=judged.flat), report)
 
 
 def _plate(plate: Plate) -> Outcome[Certificate | None]:

@@ -20,8 +20,10 @@ from stages.geometry.meshflat import MeshMap, noise, resting
 from stages.geometry.meshlengths import chords, curved, mended
 from stages.geometry.meshtopology import Edges
 
-DEVIATIONS = 4.0
-"""Of some fifty regions one in three hundred meshes has one further off by chance."""
+DEVIATIONS = 3.0
+"""Of ten large regions one is further off by chance in one mesh of forty."""
+DISBELIEF = 3.0
+"""Where the fits are not good enough for lengths, coarse and noisy at once, doubts are so much larger."""
 CELL = 64
 """Triangles to a cell of strain, at least half of that: standard errors a tenth of the scatter."""
 MARGIN = 3.0
@@ -78,9 +80,10 @@ def warp(studied: Studied) -> Bound:
     size = np.abs(mean)
     likely = length * np.sqrt(size)
     large = found.scale == 0
+    surely = size - doubt * (1.0 if studied.flat.kind == "curved" else DISBELIEF)
     worst = int(np.argmax(np.where(large, likely, -1.0)))
     return Bound(
-        float((length * np.sqrt(np.maximum(size - doubt, 0.0))).max()), float(likely[worst]),
+        float((length * np.sqrt(np.maximum(surely, 0.0))).max()), float(likely[worst]),
         float((length * np.sqrt(size + doubt))[large].max()), int(found.centres[worst]),
     )  # fmt: skip
 

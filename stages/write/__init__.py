@@ -37,9 +37,15 @@ def judged(files: Sequence[CutFile], drawings: Sequence[Drawing], patterns: dict
     for file, drawing in zip(files, drawings, strict=True):
         back = read(file.text)
         comparison = compared(back, drawing, patterns if drawing.path.startswith("flat/") else {})
-        findings += faults(back, file.path, comparison.shortest_mm)
+        findings += faults(back, file.path, comparison.shortest_mm, _chord(drawing, patterns))
         findings += comparison.findings
         comparisons.append(comparison)
         figures[file.path] = cut_figures(back)
         entities += len(back.entities)
     return StageReport("write", "cut files", metrics(comparisons, entities), tuple(findings), {"files": figures})
+
+
+def _chord(drawing: Drawing, patterns: dict[str, FlatPattern]) -> float:
+    """Return the largest chord that a contour of a drawing was approximated with, mm."""
+    parts = {item.part for item in drawing.items if item.contour is not None}
+    return max((patterns[part].outer.chord_mm for part in parts), default=0.0)

@@ -31,15 +31,22 @@ APART_MM = 1e-3
 
 SAME_VERTEX_MM = 1e-6
 MOST_BULGE = 1.0 + 1e-9
-INSIDE_MM = 0.05
-"""How far a mark or hole may reach beyond its outline and still belong to it: marks may end on the contour."""
+BESIDE_MM = 0.05
+"""How far a mark or hole may reach beyond its outline besides what lines and arcs are off their exact curves."""
+TWO_CURVES = 2.0
+"""A mark that ends on the exact outline and the outline itself are each within the chord of their exact curves."""
+POLYGON_MM = BESIDE_MM / 4.0
+"""How near the polygons come to the arcs that they stand for."""
 
 WHOLE = 0.999
 """Share of a contour that is cut twice from which on it is a copy, not a side shared with a neighbour."""
 
 
-def faults(file: ReadFile, path: str, shortest_mm: float) -> list[Finding]:
-    """Return the faults of one file; `shortest_mm` is the length below which a piece is too short."""
+def faults(file: ReadFile, path: str, shortest_mm: float, chord_mm: float) -> list[Finding]:
+    """Return the faults of one file.
+
+    shortest_mm: the length below which a piece is too short.  chord_mm: how far its paths may be off their exact curves.
+    """
     found: list[Finding] = [_fatal("readback-complaint", path, text) for text in file.complaints]
     if not file.entities:
         return found or [_fatal("readback-empty", path, "no entity")]
@@ -47,7 +54,9 @@ def faults(file: ReadFile, path: str, shortest_mm: float) -> list[Finding]:
         found += [_fatal(code, path, text) for code, text in check(file)]
     found += [_fatal("readback-short-piece", path, text) for text in _short_pieces(file, shortest_mm)]
     if not found:
-        found += [_fatal("readback-order", path, text) for text in _order(file.entities)]
+        found += [
+            _fatal("readback-order", path, text) for text in _order(file.entities, TWO_CURVES * chord_mm + BESIDE_MM)
+        ]
     return found + list(_overlaps(file.entities, path))
 
 
@@ -134,25 +143,28 @@ def _directions(file: ReadFile) -> Iterator[tuple[str, str]]:
             yield "readback-direction", f"{entity.kind} on {entity.layer} runs the wrong way round"
 
 
-def _order(entities: Sequence[Entity]) -> Iterator[str]:
-    """Yield what is not followed by its own outline: of each part marks, then holes, then the outline around them."""
+def _order(entities: Sequence[Entity], beside_mm: float) -> Iterator[str]:
+    """Yield what is not followed by its own outline: of each part marks, then holes, then the outline around them.
+
+    beside_mm: how far a mark or hole may reach beyond its outline and still belong to it.
+    """
     group: list[Entity] = []
     for entity in entities:
         if entity.layer in RANK:
             group.append(entity)
         if entity.layer == "CUT_OUTER":
-            yield from _group_order(group)
+            yield from _group_order(group, beside_mm)
             group = []
     if group:
         yield f"{len(group)} marks or holes come after the last outline"
 
 
-def _group_order(group: Sequence[Entity]) -> Iterator[str]:
+def _group_order(group: Sequence[Entity], beside_mm: float) -> Iterator[str]:
     """Yield what is out of order among the paths that end with one outline."""
     ranks = [RANK[entity.layer] for entity in group]
     if ranks != sorted(ranks):
         yield "marks must come before holes"
-    outline = _region(group[-1].path, INSIDE_MM)
+    outline = _region(group[-1].path, beside_mm)
     if outline is None:
         return
     prepare(outline)
@@ -163,12 +175,12 @@ def _group_order(group: Sequence[Entity]) -> Iterator[str]:
 
 def _region(path: ArcPath | None, margin: float) -> Polygon | None:
     """Return the region inside a path, grown by `margin` mm."""
-    return None if path is None else Polygon(polygon(path, accuracy=margin / 4.0)).buffer(margin)
+    return None if path is None else Polygon(polygon(path, accuracy=POLYGON_MM)).buffer(margin)
 
 
 def _ring(path: ArcPath) -> Array:
     """Return a ring of points that stands for the path; an open one runs there and back."""
-    points = polygon(path, accuracy=INSIDE_MM / 4.0)
+    points = polygon(path, accuracy=POLYGON_MM)
     return points if path.closed and points.shape[0] > 2 else np.concatenate([points, points[::-1]])  # noqa: PLR2004
 
 

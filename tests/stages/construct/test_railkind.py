@@ -1,6 +1,5 @@
 """Rails as a part among others: divided, joined, moved, folded; rails that meet, rails moved along, frames."""
 
-from fractions import Fraction
 from math import acos, degrees, sqrt
 
 import mpmath as mp
@@ -9,9 +8,6 @@ import pytest
 
 from stages.construct.curves import chain
 from stages.construct.railkind import rail_strip
-from stages.geometry.curves import bezier
-from stages.geometry.railcorners import Leg
-from stages.geometry.railfold import fold_at, folds_between, smallest_folds
 from stages.geometry.railstrip import closed_bounds
 from stages.model.rails import Rails
 from stages.model.surface import RuledSurface
@@ -161,23 +157,6 @@ def test_closed_rails_with_a_strip_have_no_lower_bound() -> None:
     spec = read(rails(frame(1.5, 0), {"circle": {"center": [0, 0, 2], "radius": 1, "normal": [0, 0, 1]}})).surface
     assert isinstance(spec, Rails)
     assert [bound.fold_rad for bound in closed_bounds(chain(spec.rail_a).curves, chain(spec.rail_b).curves)] == [0, 0]
-
-
-def test_folds_are_made_smaller_by_moving_their_corners() -> None:
-    """Two skew lines, with a fold put in the middle of a way with three legs: it ends at the best the legs allow."""
-    a, b = (
-        bezier([[Fraction(x) for x in p] for p in line]) for line in (((0, 0, 0), (4, 0, 0)), ((0, 0, 2), (3, 2, 2)))
-    )
-    middle = [[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [1.0, 1.0]]
-    ways = [np.array(middle[k : k + 2]) for k in range(3)]
-    parts = (Leg("on_a", ways[0], True), Leg("on_b", ways[1], True), Leg("on_a", ways[2]))
-    both = parts, smallest_folds(parts, (a,), (b,))
-    squares = [sum(fold**2 for fold in folds_between(legs, (a,), (b,))) for legs in both]
-    assert squares[1] < squares[0]
-    # along the one parameter that is free the sum is nowhere smaller than what was found
-    places = [[np.array([x, s]) for s in (0.0, 1.0)] for x in np.linspace(0.0, 1.0, 101)[1:-1]]
-    every = [sum(fold_at(place, (0, 0), (a,), (b,)) ** 2 for place in pair) for pair in places]
-    assert squares[1] <= min(every)
 
 
 def test_a_least_radius_takes_a_strip_without_cones_where_there_is_one() -> None:

@@ -43,14 +43,14 @@ def test_normals_of_a_cylinder_inside_and_at_the_edges() -> None:
     assert np.median(off) < 2e-9
 
 
-def test_a_polynomial_of_its_degree_is_reproduced_where_the_plane_is_not_tilted() -> None:
+def test_a_polynomial_of_its_degree_is_reproduced() -> None:
     """In a tilted plane a quartic is no polynomial any more: the error is what the tilt makes of degree 5."""
     mesh, exact = quartic(0)
     flatter = Mesh(mesh.vertices * [1.0, 1.0, 1e-6], mesh.faces)
     fit = fit_of(flatter)
     normals = unit(exact / exact[:, 2:] * [1e-6, 1e-6, 1.0])
     assert_near(norm(cross3(fit.normals, normals)), np.zeros(len(exact)), bound=1e-13,
-                why="slopes of 1e-5; what the tilt of 1e-5 adds is quadratic in it; Legendre's conditioning 1e3")  # fmt: skip
+                why="slopes of 1e-5; the tilt adds their square; condition 1e3")  # fmt: skip
 
 
 def test_curvatures_of_a_sphere_are_one_in_every_direction() -> None:

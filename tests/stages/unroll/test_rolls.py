@@ -11,7 +11,7 @@ from stages.model.kfactor import KFactor
 from stages.model.material import Material
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import Tolerances
-from stages.unroll.rolls import Rolling, ratio_of, rolled, tool_radius
+from stages.unroll.rolls import TOO_SHARP, Rolling, ratio_of, rolled, tool_radius
 from stages.unroll.thickness import neutral
 from tests.near import assert_near, assert_relative
 from tests.parts import AUMANN_CUBIC, EXAMPLE_1, EXAMPLE_2_CYLINDER, RIGHT_FRUSTUM, Table, part
@@ -110,6 +110,34 @@ def test_what_is_not_elastic_has_no_springback() -> None:
     assert (made.metrics, made.findings) == ((), ())
     assert tool_radius(LEATHER, 100.0) is None
     assert tool_radius(STEEL, None) is None
+
+
+POINTED: Table = {"kind": "cone", "apex": [0, 0, 400], "fraction": [0, 1],
+                  "directrix": {"circle": {"center": [0, 0, 0], "radius": 300}}}  # fmt: skip
+
+
+@pytest.mark.parametrize("material", [STEEL, LEATHER])
+def test_an_apex_has_no_tool_radius_and_says_why(material: Material) -> None:
+    made = schedule(POINTED, material)
+    for row in made.rows:
+        base, apex = row["radius_mm"]  # type: ignore[misc]
+        assert (apex, row["note"]) == (0.0, TOO_SHARP)
+        if material is STEEL:
+            tool = row["tool_radius_mm"]
+            assert tool == [tool_radius(STEEL, base), None]
+            assert 0.0 < tool[0] < base
+        else:
+            assert "tool_radius_mm" not in row
+    assert not any("note" in row for row in schedule(SHELL, material).rows)
+
+
+def test_what_springs_back_to_more_than_asked_has_no_tool() -> None:
+    """R_f / (R / R_f) with an inside tool radius of 0: the middle is bent to t / 2."""
+    middle = 1.0 / ratio_of(235.0 / (2.0 * 210e3))
+    just = tool_radius(STEEL, middle - 1.0 + 1e-6)
+    assert tool_radius(STEEL, middle - 1.0 - 1e-4) is None
+    assert just is not None
+    assert just > 0.0
 
 
 def test_a_radius_beyond_the_elastic_limit_is_reported() -> None:

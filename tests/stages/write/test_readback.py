@@ -20,7 +20,7 @@ from stages.write.drawing import flat_drawing
 from stages.write.dxf import dxf_text
 from stages.write.faults import faults
 from stages.write.readback import read
-from tests.stages.write.patterns import nesting, plate, sector
+from tests.stages.write.patterns import CHORD_MM, nesting, plate, sector
 
 MACHINE = Machine()
 LEAST_MM = 0.05
@@ -39,7 +39,7 @@ def with_change(change: Callable[[Document], None]) -> str:
 
 
 def codes(text: str) -> set[str]:
-    return {finding.code for finding in faults(read(text), "flat/plate.dxf", LEAST_MM) if finding.fatal}
+    return {finding.code for finding in faults(read(text), "flat/plate.dxf", LEAST_MM, CHORD_MM) if finding.fatal}
 
 
 def outline(document: Document) -> LWPolyline:
@@ -289,3 +289,19 @@ def test_an_edge_that_is_itself_short_is_said_and_stops_nothing() -> None:
     outcome = write([pattern("cut-corner", contour(polygon_edges(*corners)), (20.0, 10.0))], None, MACHINE)
     assert outcome.report.passed
     assert [f.code for f in outcome.report.findings] == ["short-piece"]
+
+
+@pytest.mark.parametrize("chord_mm", [0.02, 0.1, 1.0])
+def test_a_mark_may_end_on_the_exact_outline_whatever_the_chord(chord_mm: float) -> None:
+    """A side that bulges by the chord is cut straight: the mark that ends on the bulge belongs to the part all the same."""
+    from tests.stages.write.patterns import line_mark, pattern, polygon_edges
+
+    corners = ((0.0, 0.0), (100.0, 0.0), (100.0, 60.0), (0.0, 60.0))
+    outer = Contour(tuple(polygon_edges(*corners)), plate().outer.path, chord_mm)
+
+    def found(beyond: float) -> list[str]:
+        part = pattern("plate", outer, (45.0, 20.0), marks=(line_mark((50.0, 10.0), (50.0, 60.0 + beyond)),))
+        return [finding.code for finding in write([part], None, MACHINE).report.findings]
+
+    assert found(chord_mm) == []
+    assert found(3.0 * chord_mm + 0.1) == ["readback-order"]
