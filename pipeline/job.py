@@ -1,8 +1,9 @@
 """A job ready to run: the tables of the file turned into the values that the stages take."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from hashlib import sha256
+from typing import TYPE_CHECKING
 
 from pipeline.decode import canonical
 from pipeline.jobfile import JobFile, MaterialTable, ProcessTable, ReadJob, Rotations
@@ -15,6 +16,11 @@ from stages.model.material import Material, Part
 from stages.model.process import Process
 from stages.model.sheet import NestOptions, Sheet
 from stages.model.tolerances import Tolerances
+
+if TYPE_CHECKING:
+    from hashlib import _Hash as Hash
+
+    from stages.geometry.mesh import Mesh
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +83,8 @@ def _part(read: ReadJob, number: int, material: Material, process: Process) -> P
     spec, source = read.tables.part[number], read.meshes.get(number)
     if number in read.faces:
         return Part(spec, material, process, read.faces[number].body)
+    if number in read.touched:
+        return _touching(read, number, Part(spec, material, process))
     if source is None:
         return Part(spec, material, process)
     from pipeline.meshsources import doubts
@@ -85,16 +93,32 @@ def _part(read: ReadJob, number: int, material: Material, process: Process) -> P
     return Part(spec, material, process, source.mesh, doubts(source, sheets))
 
 
+def _touching(read: ReadJob, number: int, part: Part) -> Part:
+    """Return a part with the meshes that its surface points at; they need lie on no sheet."""
+    from pipeline.meshsources import doubts
+
+    sources = read.touched[number]
+    remarks = tuple(doubt for source in sources.values() for doubt in doubts(source, ()))
+    return replace(part, meshes={table: source.mesh for table, source in sources.items()}, remarks=remarks)
+
+
 def _digest(read: ReadJob) -> str:
     """Return the sha256 of everything that the job is made of."""
     whole = sha256(canonical(read.tables))
     for number, source in sorted(read.meshes.items()):
-        whole.update(f"{number} {len(source.mesh.vertices)} ".encode())
-        whole.update(source.mesh.vertices.astype("<f8").tobytes())
-        whole.update(source.mesh.faces.astype("<i8").tobytes())
+        _add_mesh(whole, number, source.mesh)
     for number, faces in sorted(read.faces.items()):
         whole.update(f"{number} {faces.digest} ".encode())
+    for number, sources in sorted(read.touched.items()):
+        for _, source in sorted(sources.items(), key=lambda item: (item[0].file, item[0].units or "")):
+            _add_mesh(whole, number, source.mesh)
     return whole.hexdigest()
+
+
+def _add_mesh(whole: "Hash", number: int, mesh: "Mesh") -> None:
+    whole.update(f"{number} {len(mesh.vertices)} ".encode())
+    whole.update(mesh.vertices.astype("<f8").tobytes())
+    whole.update(mesh.faces.astype("<i8").tobytes())
 
 
 def _material(table: MaterialTable) -> tuple[Material, tuple[str, ...]]:

@@ -25,7 +25,7 @@ from stages.model.curves import Table, Trouble, negatives, not_positive
 from stages.model.cutfile import Flavour, Version
 from stages.model.ducts import is_set
 from stages.model.faces import FaceFile
-from stages.model.meshes import MeshFile
+from stages.model.meshes import MeshFile, MeshNormals
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
 from stages.model.tolerances import Class, Tolerances
@@ -239,7 +239,7 @@ class ReadJob:
     """A job file as read: its tables, where it lies, and what was noted on the way.
 
     inputs: name and sha256 of the job file and of every drawing and mesh that it points at.
-    meshes, faces: those of the parts that have them, by their numbers.
+    meshes, faces: those of the parts that have them, by their numbers; touched: the meshes that else they point at.
     """
 
     tables: JobFile
@@ -248,6 +248,7 @@ class ReadJob:
     inputs: tuple[tuple[str, str], ...]
     meshes: Mapping[int, "MeshSource"] = field(default_factory=dict)
     faces: Mapping[int, "CadSource"] = field(default_factory=dict)
+    touched: Mapping[int, "Mapping[MeshNormals, MeshSource]"] = field(default_factory=dict)
 
 
 def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent) -> ReadJob:
@@ -266,7 +267,7 @@ def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent) -> R
     if tables is None:
         raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
     inputs = ((file.name, sha256(content).hexdigest()), *sources.digests)
-    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces)
+    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched)
 
 
 def _unit(raw: dict[str, object]) -> str:

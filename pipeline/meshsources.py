@@ -19,7 +19,7 @@ from pipeline.meshfiles import LARGEST_FILE, MeshFileError, format_of, parsed
 from pipeline.sources import Tell
 from pipeline.units import MM_PER
 from stages.geometry.mesh import Mesh
-from stages.model.meshes import MeshFile
+from stages.model.meshes import MeshFile, MeshNormals
 from stages.model.report import Finding
 
 SAMPLE = "sample:"
@@ -72,7 +72,7 @@ def content_of(folder: Path, name: str, tell: Tell) -> bytes:
         raise ResolveError("file", f"{name} cannot be read: {reason}", "") from None
 
 
-def mesh_source(content: bytes, table: MeshFile, job_unit: str) -> MeshSource:
+def mesh_source(content: bytes, table: MeshFile | MeshNormals, job_unit: str) -> MeshSource:
     """Return the mesh of a file in mm; ResolveError where there is none, or two units contradict each other."""
     name = Path(table.file).name
     try:

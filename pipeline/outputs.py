@@ -1,10 +1,15 @@
 """Everything that goes into the output folder of a job: report, drawings, pictures."""
 
+from typing import TYPE_CHECKING
+
 from pipeline.files import drawings, file_names
 from pipeline.report.document import Document, class_of, document, encoded
 from pipeline.report.lines import stage_line, trouble_lines
 from pipeline.run import JobResult, PartRun
 from pipeline.store import REPORT
+
+if TYPE_CHECKING:
+    from stages.geometry.meshflat import MeshMap
 
 
 def outputs(result: JobResult) -> tuple[Document, dict[str, bytes]]:
@@ -25,7 +30,9 @@ def pictures(result: JobResult) -> dict[str, bytes]:
     for run in result.parts:
         if run.surface is not None:
             name = f"preview/{names.parts[run.part.name]}.png"
-            drawn[name] = part_picture(run.surface, run.pattern, remarks(run), worst_v(run), class_of(run))
+            drawn[name] = part_picture(
+                run.surface, run.pattern, remarks(run), worst_v(run), class_of(run), flat=map_of(run)
+            )
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
     for layout in result.nest.product.layouts if result.nest.product is not None else ():
         name = names.drawing(layout).replace("cut/", "preview/").replace(".dxf", ".png")
@@ -37,6 +44,14 @@ def remarks(run: PartRun) -> list[str]:
     """Return what the terminal says of a part."""
     steps = [step for step in run.steps if step.status != "skipped"]
     return [line for step in steps for line in (stage_line(step), *trouble_lines(step.report))]
+
+
+def map_of(run: PartRun) -> "MeshMap | None":
+    """Return the map of a mesh that was judged by it."""
+    from stages.model.surface import Certificate
+
+    judged = [step.product for step in run.steps if isinstance(step.product, Certificate)]
+    return judged[0].flat if judged else None
 
 
 def worst_v(run: PartRun) -> float | None:

@@ -5,7 +5,7 @@ them.  The digest of the input is that of its values: layout and comments of the
 digest is told in `run`, as the file is of this run and not of the job).  Same job and same program, same block.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -13,6 +13,7 @@ from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from pathlib import PurePath
 from platform import python_version
 
 from pipeline import __version__
@@ -21,8 +22,13 @@ from pipeline.materials import MaterialRow, look_up
 from pipeline.processes import limits
 from stages.model.tolerances import STRAIN_LIMIT, WARP_LIMIT_DEG, Tolerances
 
-LIBRARIES = ("ezdxf", "numpy", "scipy", "shapely", "spyrrow")
-"""What computes or writes numbers of a report beside planish itself."""
+LIBRARIES = ("ezdxf", "numpy", "scipy", "shapely", "spyrrow", "trimesh")
+"""What reads, computes or writes numbers of a report beside planish itself."""
+CAD_LIBRARIES = {
+    "cadquery-ocp-novtk": (".step", ".stp", ".iges", ".igs"),
+    "rhino3dm": (".3dm",),
+}
+"""The distributions that read CAD files, an extra, by the ends of their names: told where a job points at one."""
 PACKAGES = ("pipeline", "stages")
 JOB = "job file"
 DEFAULT = "default of planish"
@@ -52,9 +58,14 @@ def provenance(digest: str, limits: tuple[Limit, ...]) -> dict[str, object]:
     }
 
 
-def environment() -> dict[str, str]:
-    """Return the versions of the interpreter and of the libraries that compute: for `run`."""
-    return {"python": python_version(), **{name: _version(name) for name in LIBRARIES}}
+def environment(inputs: Iterable[str] = ()) -> dict[str, str]:
+    """Return the versions of the interpreter and of the libraries that compute: for `run`.
+
+    inputs: names of the files that the job is made of.
+    """
+    ends = {PurePath(name).suffix.lower() for name in inputs}
+    readers = [library for library, suffixes in CAD_LIBRARIES.items() if ends.intersection(suffixes)]
+    return {"python": python_version(), **{name: _version(name) for name in (*LIBRARIES, *readers)}}
 
 
 def _version(name: str) -> str:

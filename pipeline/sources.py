@@ -16,7 +16,7 @@ from pipeline.paths import Path
 from pipeline.units import UnreadableError
 from stages.model.curves import CurveSpec, Table
 from stages.model.faces import FaceFile
-from stages.model.meshes import MeshFile
+from stages.model.meshes import MeshFile, MeshNormals
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -45,7 +45,8 @@ def silent(_text: str) -> None:
 class Sources:
     """The drawings and meshes of one job file, each read once, and their names and sha256.
 
-    meshes, faces: by the number of the part.  tell: is told what takes long.
+    meshes, faces: by the number of the part; touched: the meshes besides that its surface points at.
+    tell: is told what takes long.
     """
 
     folder: FilePath
@@ -55,12 +56,15 @@ class Sources:
     digests: list[tuple[str, str]] = field(default_factory=list)
     meshes: dict[int, "MeshSource"] = field(default_factory=dict)
     faces: dict[int, "CadSource"] = field(default_factory=dict)
+    touched: dict[int, "dict[MeshNormals, MeshSource]"] = field(default_factory=dict)
     tell: Tell = silent
 
     def resolve(self, table: Table, path: Path) -> Table | Several:
         """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
         if isinstance(table, MeshFile):
-            self._read_mesh(table, path)
+            self.meshes[_part(path)] = self._mesh(table)
+        if isinstance(table, MeshNormals):
+            self.touched.setdefault(_part(path), {})[table] = self._mesh(table)
         if isinstance(table, FaceFile):
             self._read_faces(table, path)
         if not isinstance(table, CurveSpec) or table.file is None:
@@ -76,8 +80,8 @@ class Sources:
             _all_closed(curves, key)
         return curves[0].spec()
 
-    def _read_mesh(self, table: MeshFile, path: Path) -> None:
-        """Read the mesh of a part."""
+    def _mesh(self, table: MeshFile | MeshNormals) -> "MeshSource":
+        """Return the mesh of a file."""
         from pipeline.meshsources import content_of, mesh_source
 
         content = content_of(self.folder, table.file, self.tell)
@@ -88,7 +92,7 @@ class Sources:
         note = f"{table.file} states no unit: taken as {source.unit}, the unit of the job"
         if source.assumed and note not in self.notes:
             self.notes.append(note)
-        self.meshes.update({number: source for number in path if isinstance(number, int)})
+        return source
 
     def _read_faces(self, table: FaceFile, path: Path) -> None:
         """Read the faces of a part."""
@@ -134,6 +138,11 @@ class Sources:
             known = ", ".join(f"{number} = {unit}" for number, unit in UNIT_OF_CODE.items())
             raise ResolveError("file", f"{name} has the unit $INSUNITS = {code}", f"units read here: {known}")
         return UNIT_OF_CODE[code]
+
+
+def _part(path: Path) -> int:
+    """Return the number of the part that a path leads into."""
+    return next(number for number in path if isinstance(number, int))
 
 
 def _same(a: str, b: str) -> bool:

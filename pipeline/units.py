@@ -36,6 +36,8 @@ DEGREES_PER = {"deg": Fraction(1), "rad": 180 / PI}
 
 LARGEST = 10**9
 """Nothing in mm, 1/mm, degrees or plain numbers is larger: a thousand kilometres of sheet is a slip of the keyboard."""
+LEAST = Fraction(1, 10**20)
+"""Nothing but 0 is smaller: what rounding leaves of a 0, as of the cosine of 90 deg, is 1e-16 of the others."""
 MOST_DIGITS = 100
 LEAST_EXPONENT = -400
 """Below the smallest double; the fraction still takes only some 1300 bits."""
@@ -79,6 +81,8 @@ def quantity(sort: type[Quantity], value: object, unit: str = "mm") -> Quantity:
         raise UnreadableError(f"{describe(value)} where {_EXAMPLE[sort].split(' such')[0]} belongs", hint)
     if abs(size * scale) > LARGEST:
         raise UnreadableError(f"{describe(value)} is absurdly large", f"at most 1e9 in mm, 1/mm, degrees; {hint}")
+    if 0 < abs(size * scale) < LEAST:
+        raise UnreadableError(f"{describe(value)} is absurdly small", f"0, or at least 1e-20; {hint}")
     return sort(size * scale)
 
 

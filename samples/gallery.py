@@ -10,12 +10,14 @@ SAMPLES = Path(__file__).parent
 PICTURES = {
     "auger": ("flight", "flare"),
     "bag": ("flap",),
+    "bracket": ("bracket",),
     "cladding": ("fascia", "handrail-band"),
     "ducts": ("transition", "galvanised-1"),
     "guard": ("hood",),
     "hopper": ("offset-cone", "plate-1"),
     "paper": ("example-2",),
     "strakes": ("bilge", "hood", "aluminium-1"),
+    "upper": ("toe", "seat"),
 }
 
 

@@ -5,15 +5,18 @@ up to 0.42 of a cell, and Delaunay's triangles are taken.  Rulings run across th
 is aligned with them but its ends.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.spatial import Delaunay
 
-from stages.geometry.arrays import Array, Points2, Triples
+from stages.geometry.arrays import Array, Points2, Triples, Values
+from stages.geometry.curves import Circular
 from stages.geometry.development import develop
 from stages.geometry.mesh import Mesh
-from stages.geometry.ruled import RuledPatch, warp
+from stages.geometry.ruled import RuledPatch, between, warp
 from tests.parts import QUINTIC_TANGENT, Table, patches
 from tests.warped import saddle, shaken
 
@@ -90,6 +93,10 @@ ROUND_CONE: Table = {
     "directrix": {"bezier": [[3, 0, 0], [3, 2.5, 0], [0, 3.5, 0.5], [-3, 2, 0], [-3, -1, 0.5], [0, -2.5, 0]]},
 }  # fmt: skip
 """Over a quintic that runs once around, the apex outside."""
+STRAP: Table = {
+    "kind": "strap", "half_width": 0.3, "centre": {"bezier": [[0, 0, 0], [1, 0, 0], [2, 1, 0], [3, 3, 1]]},
+}  # fmt: skip
+"""The rectifying developable of a twisted cubic: a straight strip in the flat."""
 
 
 def oblique_cone(seed: int, columns: int = COLUMNS, rows: int = ROWS) -> Known:
@@ -104,11 +111,61 @@ def tangent_surface(seed: int, columns: int = COLUMNS, rows: int = ROWS) -> Know
     return ruled(patches(QUINTIC_TANGENT)[0], seed, columns, rows)
 
 
+def strap(seed: int, columns: int = COLUMNS, rows: int = ROWS) -> Known:
+    return ruled(patches(STRAP)[0], seed, columns, rows)
+
+
 KNOWN = {
     "cylinder": cylinder, "right cone": right_cone, "oblique cone": oblique_cone, "round cone": round_cone,
-    "tangent surface": tangent_surface,
+    "tangent surface": tangent_surface, "strap": strap,
 }  # fmt: skip
 """Developables with exact flat positions."""
+
+
+TABLES = {"oblique cone": OBLIQUE_CONE, "round cone": ROUND_CONE, "tangent surface": QUINTIC_TANGENT, "strap": STRAP}
+"""Those of them that the job file can state."""
+
+
+def patch_of(name: str) -> RuledPatch:
+    """Return one of these developables as a ruled patch of size 1 or so."""
+    if name in TABLES:
+        return patches(TABLES[name])[0]
+    x, y, z = np.eye(3)
+    (low, high), turn, rise = {"cylinder": ((1.0, 1.0), 2.5, 0.5), "right cone": ((1.4, 0.7), 3.0 / 0.7, 0.7)}[name]
+    lower = Circular(np.zeros(3), low * x, low * y, 0.0 * z, 0.0, turn)
+    return between(lower, Circular(rise * z, high * x, high * y, 0.0 * z, 0.0, turn))
+
+
+def throughout(v: Values) -> Values:
+    """Warp all over."""
+    return np.ones_like(v)
+
+
+def in_a_quarter(v: Values) -> Values:
+    """Warp in the second quarter alone, fading out with two derivatives; the rest is developable."""
+    return np.asarray(np.clip(1.0 - ((v - 0.375) / 0.125) ** 2, 0.0, None) ** 3)
+
+
+def twisted(name: str, warp_deg: float, seed: int, share: Callable[[Values], Values] = throughout) -> Mesh:
+    """A developable twisted along its rulings, so that the normal turns by `warp_deg` times `share` along each.
+
+    p' = a c0' + b p on the developable; with t (1 + a) c0' x p / |p| added, t the tangent of the warp, N1 = c1' x p is
+    turned out of N0 = c0' x p by just that angle.
+    """
+    patch, (v, u, faces) = patch_of(name), jittered(seed)
+
+    def slope(at: float, p: Array) -> Array:
+        place = np.array([at])
+        (_, (tangent,)), ((p0,), (p1,)) = patch.c0.jet(place, 1), patch.p.jet(place, 1)
+        (a, b), *_ = np.linalg.lstsq(np.column_stack([tangent, p0]), p1, rcond=None)
+        turn = np.tan(np.radians(warp_deg * share(place)[0]))
+        return np.asarray(a * tangent + b * p + turn * (1.0 + a) * np.cross(tangent, p) / np.linalg.norm(p))
+
+    start = patch.p.jet(np.zeros(1), 0)[0, 0]
+    found = solve_ivp(slope, (0.0, 1.0), start, method="DOP853", rtol=1e-13, atol=1e-14, max_step=1.0 / 64.0,
+                      t_eval=np.unique(v))  # fmt: skip
+    p = found.y.T[np.searchsorted(found.t, v)]
+    return Mesh(patch.c0.jet(v, 0)[0] + u[:, None] * p, faces)
 
 
 def square_saddle(warp_deg: float, seed: int, cells: int = 71) -> Mesh:

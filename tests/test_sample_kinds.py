@@ -12,8 +12,6 @@ from samples.gallery import PICTURES
 from stages.model.part import KINDS
 from tests.samples import SAMPLES
 
-FROM_FILES = {"mesh", "face"}
-"""Kinds whose surface lies in a file of another program."""
 MADE = sorted(path for path in SAMPLES.glob("*/*.toml") if path.name == "job.toml")
 ALL = sorted(SAMPLES.glob("*/*.toml"))
 
@@ -31,7 +29,7 @@ def kinds_in(value: object) -> Iterator[str]:
 
 
 def test_every_kind_of_surface_is_in_a_sample_that_is_made() -> None:
-    wanted = {str(kind.__struct_config__.tag) for kind in KINDS} - FROM_FILES
+    wanted = {str(kind.__struct_config__.tag) for kind in KINDS}
     shown = {
         kind for path in MADE for part in tomllib.loads(path.read_text("utf-8"))["part"] for kind in kinds_in(part)
     }

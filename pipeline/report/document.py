@@ -55,7 +55,7 @@ def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
             "version": __version__,
             "seconds": dict(result.seconds),
             "inputs": [{"name": name, "sha256": found} for name, found in result.job.inputs],
-            "environment": environment(),
+            "environment": environment(name for name, _ in result.job.inputs),
         },
     }
 

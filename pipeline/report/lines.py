@@ -10,11 +10,14 @@ from stages.model.report import Metric, StageReport, Where
 
 SHOWN: dict[str, tuple[tuple[str, str], ...]] = {
     "construct": (("theorem_residual", "residual"), ("join_gap_mm", "join gap"), ("speed_max", "speed")),
-    "verify": (("max_warp_deg", "warp"), ("max_gaussian_curvature", "K D2"), ("min_bend_radius_mm", "R min")),
+    "verify": (
+        ("max_warp_deg", "warp"), ("equivalent_warp_deg", "equivalent warp"), ("max_strain", "strain"),
+        ("mesh_noise", "noise"), ("max_gaussian_curvature", "K D2"), ("min_bend_radius_mm", "R min"),
+    ),
     "unroll": (("length_error", "length error"), ("area_error", "area error"), ("metric_error", "metric error")),
     "nest": (("utilisation", "utilisation"), ("min_gap_mm", "gap"), ("min_edge_gap_mm", "edge gap")),
     "write": (("max_deviation_mm", "deviation"), ("closure_gap_mm", "closure"), ("entities", "entities")),
-}
+}  # fmt: skip
 """The metrics of each stage that are shown, and what they are called."""
 
 REMEDIES = {
@@ -83,7 +86,7 @@ def _amount(value: float | bool | None, unit: str) -> str:
 
 def trouble_lines(report: StageReport) -> Iterator[str]:
     """Yield what failed and what an engineer must know, with place, limit and remedy."""
-    told = {TELLS_OF.get(finding.code) for finding in report.findings}
+    told = {name for finding in report.findings for name in TELLS_OF.get(finding.code, ())}
     for metric in report.metrics:
         if not metric.passed and metric.name not in told:
             yield _advised(metric.name, _failure(metric))
@@ -93,9 +96,9 @@ def trouble_lines(report: StageReport) -> Iterator[str]:
 
 
 TELLS_OF = {
-    "not-developable": "max_warp_deg",
-    "edge-of-regression": "max_warp_deg",
-    "bend-radius": "min_bend_radius_mm",
+    "not-developable": ("max_warp_deg", "equivalent_warp_deg"),
+    "edge-of-regression": ("max_warp_deg",),
+    "bend-radius": ("min_bend_radius_mm",),
 }
 """Findings that say in words what a failed metric says, which is then not said twice."""
 

@@ -32,9 +32,12 @@ from pipeline.report.pictures_flat import Room, compound, draw_pattern, pattern_
 from pipeline.report.pictures_mesh import draw_mesh, mesh_sight, mesh_view
 from pipeline.report.pictures_net import net, view_direction
 from pipeline.report.pictures_sheet import sheet_picture
+from pipeline.report.pictures_strain import draw_scale, strain_colours
 from pipeline.report.pictures_surface import MARGINS, draw_surface, sight
+from stages.geometry.meshflat import MeshMap
 from stages.model.pattern import FlatPattern
 from stages.model.surface import MeshSurface, Plate, RuledSurface, Surface
+from stages.model.tolerances import STRAIN_LIMIT, Class
 
 __all__ = ["part_picture", "sheet_picture"]
 
@@ -60,6 +63,8 @@ def part_picture(
     notes: Sequence[str],
     worst_v: float | None = None,
     reached: str | None = None,
+    *,
+    flat: MeshMap | None = None,
 ) -> bytes:
     """Return the picture of a part as PNG.
 
@@ -67,6 +72,7 @@ def part_picture(
     notes: lines for the engineer, written below (or beside, with a rejected part).
     worst_v: the ruling to be pointed out, v counted over the patches.
     reached: the class that verify found, for the title.
+    flat: the map of a mesh, which shows the strain where the class is one of materials that stretch.
     """
     with own_settings():
         canvas = Canvas(WIDTH, HEIGHT)
@@ -74,7 +80,8 @@ def part_picture(
         if pattern is None:
             _rejected(canvas, surface, notes, worst_v)
         else:
-            _accepted(canvas, surface, pattern, notes, worst_v)
+            strained = None if flat is None or reached not in STRAINED else (flat, STRAIN_LIMIT[STRAINED[reached]])
+            _accepted(canvas, surface, pattern, notes, worst_v, strained=strained)
         return canvas.png()
 
 
@@ -92,6 +99,7 @@ def _title(canvas: Canvas, surface: Surface, pattern: FlatPattern | None, reache
 
 
 TITLE_SIGNS = 80
+STRAIN_LEGEND = ": orange is stretched flat, blue pressed together"
 
 
 def area_mm2(pattern: FlatPattern) -> float:
@@ -100,8 +108,18 @@ def area_mm2(pattern: FlatPattern) -> float:
     return abs(side_area(pattern.outer.edges)) - holes
 
 
+STRAINED: dict[str, Class] = {"metal": "metal", "leather": "leather"}
+"""Classes of parts that are strained when they are laid flat, by their names."""
+
+
 def _accepted(
-    canvas: Canvas, surface: Surface, pattern: FlatPattern, notes: Sequence[str], worst_v: float | None
+    canvas: Canvas,
+    surface: Surface,
+    pattern: FlatPattern,
+    notes: Sequence[str],
+    worst_v: float | None,
+    *,
+    strained: tuple[MeshMap, float] | None,
 ) -> None:
     lines = wrapped(notes, NOTE_SIGNS, NOTE_LINES) if notes else []
     rows = -(-len(lines) // 2)
@@ -117,7 +135,12 @@ def _accepted(
     if isinstance(surface, MeshSurface):
         seen_from = mesh_view(surface)
         plan = arrangement(page, mesh_sight(surface, seen_from), pattern)
-        draw_mesh(canvas, plan.formed, surface, seen_from)
+        if strained is None:
+            draw_mesh(canvas, plan.formed, surface, seen_from)
+        else:
+            paint = strain_colours(surface, *strained)
+            draw_mesh(canvas, plan.formed, surface, seen_from, paint=paint, legend=STRAIN_LEGEND)
+            draw_scale(canvas, plan.formed, strained[1])
         draw_pattern(canvas, plan.flat, pattern, plan.room)
         return
     shape = net(surface, worst_v)

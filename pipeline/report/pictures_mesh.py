@@ -26,8 +26,10 @@ def mesh_sight(surface: MeshSurface, frame: Points3) -> tuple[float, float]:
     return float(extent[0]), float(extent[1])
 
 
-def draw_mesh(canvas: Canvas, box: Box, surface: MeshSurface, frame: Points3) -> None:
-    """Draw the formed mesh with axes, scale and extent."""
+def draw_mesh(
+    canvas: Canvas, box: Box, surface: MeshSurface, frame: Points3, *, paint: Array | None = None, legend: str = ""
+) -> None:
+    """Draw the formed mesh with axes, scale and extent; paint: colours of its triangles, and what they show."""
     seen = surface.mesh.vertices @ frame.T
     fit = fitted(seen[:, :2], box.inset(*MARGINS))
     corners = seen[surface.mesh.faces]
@@ -36,14 +38,15 @@ def draw_mesh(canvas: Canvas, box: Box, surface: MeshSurface, frame: Points3) ->
     front = normals[:, 2] >= 0.0
     facing = np.where(front[:, None], normals, -normals)
     bright = 1.0 - SHADE * (1.0 - np.clip(dot(facing, LIGHT / norm(LIGHT)), 0.0, 1.0))
-    fill = np.where(front[:, None], FRONT_RGB, BACK_RGB) * bright[:, None]
+    plain = np.where(front[:, None], FRONT_RGB, BACK_RGB)
+    fill = (plain if paint is None else paint[order]) * bright[:, None]
     canvas.polygons(list(fit.place(corners[order][:, :, :2])), fill, fill, 0.3)
     canvas.lines([fit.place(seen[np.append(loop, loop[:1]), :2]) for loop in surface.loops], BLUE, EDGE_WIDTH)
     triad(canvas, np.array([box.left + 0.5, box.bottom + 0.42]), frame)
     scale_bar(canvas, box.right - 0.3, box.bottom + 0.28, fit.scale, min(1.4, box.width / 4.0))
     extent = np.ptp(surface.mesh.vertices, axis=0)
     words = "   ".join(f"{axis} {length_text(mm)}" for axis, mm in zip("xyz", extent, strict=True))
-    caption(canvas, box, "Formed surface", f"extent  {words} mm")
+    caption(canvas, box, f"Formed surface{legend}", f"extent  {words} mm")
 
 
 def _areas(corners: Array) -> Points3:

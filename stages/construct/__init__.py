@@ -40,9 +40,9 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
         return mesh_surface(part, part.spec.surface, tol)
     if isinstance(part.spec.surface, FaceFile):
         return face_surface(part, tol)
-    built = patches_of(part.spec.surface, tol)
+    built = patches_of(part.spec.surface, tol, part.meshes)
     size = size_of(built.patches) if built.patches else 0.0
-    findings = [*built.findings, *_too_small(built.patches, size)]
+    findings = [*part.remarks, *built.findings, *_too_small(built.patches, size)]
     metrics, detail = [*built.metrics(size)], dict(built.detail)
     if built.patches and size > 0.0:
         joins = joins_of(built.patches)

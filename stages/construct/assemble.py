@@ -10,6 +10,7 @@ from stages.construct.bezierpair import bezier_pair
 from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, largest_gap, ruled_patches
 from stages.construct.cutcone import cut_cone, cut_frustum
+from stages.construct.meshnormals import NO_MESHES, Meshes
 from stages.construct.paper import paper_kind
 from stages.construct.pieces import strip_of
 from stages.construct.plain import cone_patches, cylinder_patches, directrix_of, frustum
@@ -38,8 +39,8 @@ from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
 
 
-def patches_of(spec: SurfaceSpec, tol: Tolerances) -> Built:
-    """Return the patches of a ruled kind."""
+def patches_of(spec: SurfaceSpec, tol: Tolerances, meshes: Meshes = NO_MESHES) -> Built:
+    """Return the patches of a ruled kind; meshes: those that it points at."""
     match spec:
         case QuinticRuled() | QuinticPlanar() | QuinticCylinder() | QuinticCone() | QuinticStrip():
             return paper_kind(spec, tol)
@@ -88,9 +89,9 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances) -> Built:
             return _joined("centre", link, strap(spec, link, tol), tol)
         case Ribbon():
             link = chain(spec.curve)
-            return _joined("curve", link, ribbon(spec, link, tol), tol)
+            return _joined("curve", link, ribbon(spec, link, tol, meshes), tol)
         case Strip():
-            return strip_of([patches_of(piece, tol) for piece in spec.pieces], tol)
+            return strip_of([patches_of(piece, tol, meshes) for piece in spec.pieces], tol)
     raise ValueError(f"no construction for {type(spec).__name__}")
 
 

@@ -70,6 +70,10 @@ def stops(key: str, curves: Sequence[Curve]) -> tuple[Finding, ...]:
 STOPPED = 1e-7
 """A speed below this share of the size vanishes: sampling comes within some 1e-8 of a zero."""
 
+LEANING_DEG = 1.0
+"""Beyond this the band does not touch the surface that was meant: normals of that surface are off by the tangent's
+error only, and tangents of a spline through points 10 deg apart by less than a hundredth of a degree."""
+
 PARALLEL = 1e-9
 """An edge of regression more than a billion sizes away is rounding: the rulings are parallel."""
 

@@ -17,6 +17,7 @@ from stages.geometry.plane import PlaneCurve, Segment
 from stages.geometry.pullback import PulledBack, lying_on
 from stages.geometry.ruled import RuledPatch
 from stages.geometry.strip import Strip, points, rulings, size
+from stages.geometry.tabled import tabled
 from stages.model.cadface import CadEdge, CadFace
 from stages.model.surface import Trim
 
@@ -102,7 +103,7 @@ def _pulled(strip: Strip, curve: Curve) -> tuple[float, Ways]:
     for side in (0.0, 1.0):
         if np.abs(inner[:, 0] - side).max() <= STRAIGHT:
             return off, (_along_edge(strip, edge, side),)
-    return off, (edge,)
+    return off, (tabled(edge, strip),)
 
 
 def _along_ruling(strip: Strip, curve: Curve, v: float) -> Ways:

@@ -22,6 +22,7 @@ from stages.geometry.plane import PlaneCurve
 from stages.geometry.pullback import PulledBack, nearest, pulled_back, rivals
 from stages.geometry.ruled import RuledPatch
 from stages.geometry.strip import Strip, jet, points, size
+from stages.geometry.tabled import tabled
 from stages.model.curves import CurveSpec, PlanePoint, in_numbers, is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks, name_of
 from stages.model.part import Flat, PartSpec
@@ -153,7 +154,7 @@ def _curve(strip: Strip, spec: CurveSpec) -> tuple[tuple[PlaneCurve, ...], float
     pulled = [pulled_back(strip, curve, SAMPLES) for curve in chain(spec).curves]
     distance = max(_checked(strip, edge) for edge in pulled)
     _refuse_gaps(strip, tuple(pulled))
-    return tuple(pulled), distance
+    return tuple(tabled(edge, strip) for edge in pulled), distance
 
 
 def _checked(strip: Strip, edge: PulledBack) -> float:

@@ -22,6 +22,8 @@ from stages.construct.meshfaults import (
 )
 from stages.construct.meshfeatures import placed_on_mesh
 from stages.construct.meshrecovery import Recovery, recovered
+from stages.construct.meshsewing import off_mesh, sewn
+from stages.construct.meshsolid import thin_solid
 from stages.construct.plain import PlaneFrame
 from stages.construct.plates import placed_in_plane
 from stages.errors import NoSolutionError
@@ -43,13 +45,10 @@ from stages.geometry.meshtopology import (
 from stages.model.material import Part
 from stages.model.meshes import MeshFile
 from stages.model.part import PartSpec
-from stages.model.report import Finding, Metric, Outcome, StageReport, Where
+from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.scalars import floats
 from stages.model.surface import MeshSurface, RuledSurface, Surface
 from stages.model.tolerances import Tolerances
-
-SEAM_OFF = 3.0
-"""Mean edges that a seam's points may be off the mesh; farther, another mesh or unit was meant."""
 
 
 @dataclass(slots=True)
@@ -110,13 +109,22 @@ def mesh_surface(part: Part, spec: MeshFile, tol: Tolerances) -> Outcome[Surface
     if mesh is None:
         return report.outcome(part, None)
     report.findings += crossing_findings(mesh, repair.tolerance_mm, report.metrics)
+    solid = thin_solid(part, mesh, tol) if spec.recognise and spec.seam is None and not report.fatal else None
+    if solid is not None:
+        part, mesh = solid.part, solid.mesh
+        report.metrics += solid.metrics
+        report.findings += solid.findings
     found = None if report.fatal else _opened(mesh, spec, report)
     if found is None:
         return report.outcome(part, None)
-    made = MeshSurface(part, found.mesh, found.loops, _size(found.mesh), found.seams)
-    exact = recovered(part, made.mesh, straight_loops(made), tol) if spec.recognise else None
+    sewing = sewn(MeshSurface(part, found.mesh, found.loops, _size(found.mesh), found.seams), spec)
+    made = sewing.surface
+    report.metrics += sewing.metrics
+    report.findings += sewing.findings
+    exact = recovered(part, made.mesh, straight_loops(made), tol) if spec.recognise and not spec.cuts else None
     if exact is not None:
         report.metrics += exact.metrics
+        report.findings += exact.findings
         report.detail |= exact.detail
     features = _features(part.spec, made, exact, tol)
     report.metrics += features.metrics
@@ -199,16 +207,10 @@ CLOSED = (
 
 def _seam_is_off(mesh: Mesh, edges: Edges, seam: Points3, report: Report) -> bool:
     """Return whether a point of the seam is nowhere near the mesh, and say so."""
-    near = np.array([float(norm(mesh.vertices - point).min()) for point in seam])
-    worst = int(np.argmax(near))
-    report.metrics.append(Metric("seam_distance_mm", float(near[worst]), "mm"))
-    allowed = SEAM_OFF * float(edge_lengths(mesh, edges).max())
-    if near[worst] <= allowed:
-        return False
-    message = f"seam[{worst}] is {near[worst]:.4g} mm from the nearest vertex, allowed {allowed:.4g} mm"
-    where: Where = dict(zip("xyz", map(float, seam[worst]), strict=True))
-    report.findings.append(Finding("mesh-seam", message, True, where))
-    return True
+    far, found = off_mesh(mesh, edges, seam, "seam", "mesh-seam")
+    report.metrics.append(Metric("seam_distance_mm", far, "mm"))
+    report.findings += found
+    return bool(found)
 
 
 def _metrics(mesh: Mesh, edges: Edges, loops: int, characteristic: int) -> list[Metric]:

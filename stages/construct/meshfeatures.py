@@ -10,8 +10,9 @@ import numpy as np
 
 from stages.construct.curves import chain
 from stages.construct.features import NoPlaceError, Placement, placement
-from stages.geometry.arrays import Points3, Vector3, cross3, dot, norm, unit
+from stages.geometry.arrays import Points3, Vector3, cross3, norm, unit
 from stages.geometry.mesh import Mesh
+from stages.geometry.meshborder import beyond
 from stages.geometry.meshnearest import OnMesh, at, nearest
 from stages.geometry.meshtopology import edges_of
 from stages.model.curves import CurveSpec, PlanePoint, is_flat
@@ -111,16 +112,9 @@ def _size(mesh: Mesh) -> float:
 
 def _refuse_beyond(mesh: Mesh, points: Points3, found: OnMesh) -> None:
     """Refuse points whose nearest place is on the edge of the mesh, though not straight below them."""
-    edges = edges_of(mesh)
-    free = edges.count[edges.of_half].reshape(-1, 3) == 1
-    # the side that begins at corner k lies across from corner k + 2
-    across = np.roll(free, 2, axis=1)[found.faces]
-    on_edge = (across & (found.weights <= 0.0)).any(axis=1)
-    normal = _normals(mesh, found)
-    off = points - at(mesh, found, mesh.vertices)
-    beside = norm(off - dot(off, normal)[:, None] * normal)
-    worst = int(np.argmax(np.where(on_edge, beside, 0.0)))
-    if on_edge[worst] and beside[worst] > BEYOND * _size(mesh):
+    beside = beyond(mesh, edges_of(mesh), points, found)
+    worst = int(np.argmax(beside))
+    if beside[worst] > BEYOND * _size(mesh):
         x, y, z = points[worst]
         raise NoPlaceError("place-outside", f"({x:.6g}, {y:.6g}, {z:.6g}) lies {beside[worst]:.4g} mm beyond the part")
 

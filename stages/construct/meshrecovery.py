@@ -5,8 +5,9 @@
 Planes, cylinders of revolution and right circular cones are recognised by their vertices (`geometry.meshrecognise`).
 The boundary's points go into the plane by closed forms; smooth edges are put through them there (`geometry.refit`):
 lines, arcs and splines.  Where they are the four edges of a patch the surface is that patch, otherwise it carries them
-as its trim.  Any other developable is fitted as the envelope of its tangent planes (`meshdevelopable`).  None where the
-vertices are not explained by such a surface: then the mesh itself has to be flattened.
+as its trim.  Flanges, bends and folds with parallel rulings make a strip (`meshbends`).  Any other developable is
+fitted as the envelope of its tangent planes (`meshdevelopable`).  None where the vertices are not explained by such a
+surface: then the mesh itself has to be flattened.
 """
 
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stages.construct.meshbends import bent_sheet
 from stages.construct.meshdevelopable import developable
 from stages.geometry.arrays import Array, Numbers, Vector2, norm
 from stages.geometry.mesh import Mesh
@@ -23,7 +25,7 @@ from stages.geometry.meshrecognise import Deviation, Recognised, recognised
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.refit import refitted
 from stages.model.material import Part
-from stages.model.report import Metric
+from stages.model.report import Finding, Metric
 from stages.model.surface import Plate, RuledSurface, Trim, whole_spans
 from stages.model.tolerances import Tolerances
 
@@ -33,7 +35,7 @@ Loops = Sequence[Numbers]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recovery:
-    """The surface, its deviation as metrics, and the parameters found.
+    """The surface, its deviation as metrics, the parameters found, and what is to be told of it.
 
     frame: origin, x and y of a plate's plane as rows, shape (3, 3); None of a ruled surface.
     """
@@ -42,14 +44,14 @@ class Recovery:
     metrics: tuple[Metric, ...]
     detail: dict[str, object] = field(default_factory=dict)
     frame: Array | None = None
+    findings: tuple[Finding, ...] = ()
 
 
 def recovered(part: Part, mesh: Mesh, loops: Loops, tol: Tolerances) -> Recovery | None:
     """Return the exact surface of a mesh that is one oriented disc, maybe with holes; None where it is none known."""
     found = recognised(mesh, chord_mm=tol.chord_mm)
     if found is None:
-        other = developable(part, mesh, loops, tol)
-        return Recovery(other.surface, _metrics(other.deviation, tol), other.detail) if other is not None else None
+        return _bent(part, mesh, loops, tol) or _developable(part, mesh, loops, tol)
     size = float(norm(np.ptp(mesh.vertices, axis=0)))
     accuracy = max(KEPT * found.deviation.most_mm, found.deviation.rounding_mm, ROUNDING * size)
     metrics, detail = _metrics(found.deviation, tol), _detail(found)
@@ -59,6 +61,19 @@ def recovered(part: Part, mesh: Mesh, loops: Loops, tol: Tolerances) -> Recovery
     made = unrolled(mesh, found.primitive)
     patch_of = _Ranged(made, loops, accuracy)
     return Recovery(_rolled(part, mesh, patch_of), metrics, detail)
+
+
+def _bent(part: Part, mesh: Mesh, loops: Loops, tol: Tolerances) -> Recovery | None:
+    made = bent_sheet(part, mesh, loops, tol)
+    if made is None:
+        return None
+    metrics = (*_metrics(made.deviation, tol), *made.metrics)
+    return Recovery(made.surface, metrics, made.detail, findings=made.findings)
+
+
+def _developable(part: Part, mesh: Mesh, loops: Loops, tol: Tolerances) -> Recovery | None:
+    made = developable(part, mesh, loops, tol)
+    return Recovery(made.surface, _metrics(made.deviation, tol), made.detail) if made is not None else None
 
 
 KEPT = 2.0

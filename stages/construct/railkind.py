@@ -13,7 +13,7 @@ import numpy as np
 from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, ends
 from stages.construct.rails import Piece, pieces, rows
-from stages.geometry.arrays import Values, norm
+from stages.geometry.arrays import Values, norm, unit
 from stages.geometry.extremum import maximum
 from stages.geometry.joins import join
 from stages.geometry.railbound import Bound
@@ -44,7 +44,8 @@ def rail_strip(spec: Rails, tol: Tolerances) -> Built:
         return Built((), findings=(_refusal(a.curves, b.curves, closed=closed[0]),))
     made = pieces(found)
     patches = tuple(piece.patch for piece in made)
-    findings = (*_folds(patches), *_apexes(made), *_too_sharp(made, spec))
+    findings = (*_folds(patches), *_smaller(patches, a.curves, b.curves, closed=closed[0]), *_apexes(made))
+    findings = (*findings, *_too_sharp(made, spec))
     return Built(patches, findings=findings, detail={"pieces": rows(found, made)})
 
 
@@ -71,15 +72,32 @@ def _refusal(rail_a: Rail, rail_b: Rail, *, closed: bool) -> Finding:
     else:
         bound, check = "none was found", "(no lower bound on its folds is known)"
     help_ = _help(fine, rail_a, rail_b, closed=closed)
-    message = f'no tangent-continuous strip: {bound} {check}{least}; {help_}, or set folds = "allow"'
+    message = f"no tangent-continuous strip: {bound} {check}{least}; {help_}"
     return Finding("no-smooth-strip", message, True, {"a": fine.t, "b": fine.s})
 
 
 def _help(at: Bound, rail_a: Rail, rail_b: Rail, *, closed: bool) -> str:
-    """Return what would help: open rails can be cut elsewhere, closed ones need another shape there."""
+    """Return what would help: open rails can be cut elsewhere, closed ones need another shape, skew lines a fold."""
+    folds = 'set folds = "allow"'
+    if _is_straight(rail_a) and _is_straight(rail_b):
+        return (
+            f"no part of two skew straight lines has a smooth strip: {folds} for two plane triangles along a diagonal"
+        )
     if closed:
-        return f"make the rails turn alike at a = {at.t:.3g}, b = {at.s:.3g}"
-    return f"trim or extend the rails at {_place(at.t, at.s, len(rail_a), len(rail_b))}"
+        return f"make the rails turn alike at a = {at.t:.3g}, b = {at.s:.3g}, or {folds}"
+    return f"trim or extend the rails at {_place(at.t, at.s, len(rail_a), len(rail_b))}, or {folds}"
+
+
+def _is_straight(rail: Rail) -> bool:
+    """Return whether the tangents of a rail all look one way, but for rounding."""
+    v = np.linspace(0.0, 1.0, TANGENTS)
+    tangents = np.concatenate([unit(piece.jet(v, 1)[1]) for piece in rail])
+    return float(norm(tangents - tangents[0]).max()) <= ONE_WAY
+
+
+TANGENTS = 9
+"""To a piece: a cubic's are the same at three places only if they are everywhere."""
+ONE_WAY = 1e-12
 
 
 def _described(strip: Strip) -> str:
@@ -111,6 +129,26 @@ def _folds(patches: tuple[RuledPatch, ...]) -> tuple[Finding, ...]:
         return ()
     message = f"the strip folds along {len(angles)} ruling{'s' * (len(angles) > 1)}, by at most {max(angles):.6g} deg"
     return (Finding("folds", message),)
+
+
+def _smaller(patches: tuple[RuledPatch, ...], rail_a: Rail, rail_b: Rail, *, closed: bool) -> tuple[Finding, ...]:
+    """Say how more folds would each be far smaller, and which key takes them."""
+    largest = max(_fold_angles(patches), default=0.0)
+    least = (closed_bounds if closed else bounds)(rail_a, rail_b)[-1].fold_rad if largest > 0.0 else 0.0
+    if least == 0.0 or largest <= FAR_LARGER * np.degrees(least):
+        return ()
+    more = best_strip(rail_a, rail_b, Rules(MORE_FOLDS * least), closed=closed)
+    if more is None:
+        return ()
+    most = np.ceil(MORE_FOLDS * np.degrees(least) * 1e3) / 1e3
+    message = f'another strip has {_described(more)}: set folds = "forbid" and max_warp = {most:g}'
+    return (Finding("smaller-folds", message),)
+
+
+FAR_LARGER = 5.0
+"""So many times what no strip avoids is a fold that several smaller ones may replace."""
+MORE_FOLDS = 2.0
+"""How many times what no strip avoids the largest of several folds may be."""
 
 
 def _apexes(made: tuple[Piece, ...]) -> tuple[Finding, ...]:

@@ -17,7 +17,7 @@ from stages.geometry.planarity import is_planar
 from stages.geometry.railchords import SHARED
 from stages.geometry.railcorners import TINY, Leg
 from stages.geometry.railpath import linked
-from stages.geometry.railstrip import Rail, Strip, as_given
+from stages.geometry.railstrip import Rail, Strip, as_given, snapped
 from stages.geometry.ruled import RuledPatch
 
 Identity = tuple[tuple[Fraction, ...], ...]
@@ -130,7 +130,7 @@ def rows(strip: Strip, made: tuple[Piece, ...]) -> list[dict[str, object]]:
     on_a, on_b = as_given(strip.rail_a, strip.starts[0]), as_given(strip.rail_b, strip.starts[1])
     found: list[dict[str, object]] = []
     for piece in made:
-        a, b = [on_a(x) for x in piece.a], [on_b(x) for x in piece.b]
+        a, b = [snapped(on_a(x)) for x in piece.a], [snapped(on_b(x)) for x in piece.b]
         if strip.backwards_b:
             count = len(strip.rail_b) - (strip.starts[1] % 1.0 != 0.0)
             b = [count - x for x in b]

@@ -1,8 +1,8 @@
 """Ribbons: the band that touches, along a curve, a surface with given normals there.
 
-The normals are interpolated by the C2 cubic spline over the parameters of the curve's points, then made perpendicular
-to the curve; the band is the envelope of the planes across them (`stages.geometry.envelope`), a developable whatever
-the normals were.  How far they lean over before that is measured.
+The normals are taken from a mesh (`meshnormals`), or interpolated by the C2 cubic spline over the parameters of the
+curve's points, then made perpendicular to the curve; the band is the envelope of the planes across them
+(`stages.geometry.envelope`), a developable whatever the normals were.  How far they lean over before that is measured.
 
 Not where the normal does not turn (the band is flat there, or the surface is), nor where it turns about the curve
 itself: the ruling then runs along the curve.
@@ -10,19 +10,22 @@ itself: the ruling then runs along the curve.
 
 from bisect import bisect_right
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
 
-from stages.construct.bands import least, limit_metric, size_along, stops, too_wide
+from stages.construct.bands import LEANING_DEG, least, limit_metric, size_along, stops, too_wide
 from stages.construct.built import Built
 from stages.construct.curves import Chain, common_pieces, spline
+from stages.construct.meshnormals import NO_MESHES, Meshes, mesh_normals
 from stages.construct.plain import closed_chain
 from stages.geometry.arrays import dot, unit
 from stages.geometry.curves import Curve
 from stages.geometry.envelope import Conjugate, crossing_sine, normal_share, room, swept, turn
 from stages.model.envelopes import Ribbon
+from stages.model.meshes import MeshNormals
 from stages.model.report import Finding, Metric, Where
 from stages.model.scalars import floats
 from stages.model.tolerances import Tolerances
@@ -31,9 +34,15 @@ Pieces = list[tuple[Curve, Curve]]
 """The curve and its normals, piece by piece."""
 
 
-def ribbon(spec: Ribbon, link: Chain, tol: Tolerances) -> Built:
+def ribbon(spec: Ribbon, link: Chain, tol: Tolerances, meshes: Meshes = NO_MESHES) -> Built:
     """Return the patches of a ribbon, how wide its sides may be, or why there is none."""
-    return band(link, normal_chain(spec, link, tol), spec.sides)
+    if not isinstance(spec.normals, MeshNormals):
+        return band(link, normal_chain(spec, link, tol), spec.sides)
+    found = mesh_normals(link, meshes[spec.normals], tol)
+    if found.normals is None:
+        return Built((), found.metrics, found.findings)
+    built = band(link, found.normals, spec.sides)
+    return replace(built, measured=(*found.metrics, *built.measured), findings=(*found.findings, *built.findings))
 
 
 def band(link: Chain, normals: Chain, sides: tuple[float, float]) -> Built:
@@ -64,6 +73,8 @@ def _made(sides: tuple[float, float], curves: list[Curve], rulings: list[Conjuga
 
 def normal_chain(spec: Ribbon, link: Chain, tol: Tolerances) -> Chain:
     """Return the spline through the unit normals as given, over the parameter of the curve."""
+    if isinstance(spec.normals, MeshNormals):
+        raise ValueError("normals of a mesh are not given one by one")
     given = unit(np.array([floats(normal) for normal in spec.normals]))
     steps = len(given) - 1
     at = link.breaks if spec.curve.points is not None else tuple(Fraction(i, steps) for i in range(steps + 1))
@@ -95,11 +106,6 @@ def _given(normals: Chain) -> list[np.ndarray]:
     """Return the normals that the spline goes through."""
     ends = [curve.jet(np.array([0.0, 1.0]), 0)[0] for curve in normals.curves]
     return [end[0] for end in ends] + [ends[-1][1]]
-
-
-LEANING_DEG = 1.0
-"""Beyond this the band does not touch the surface that was meant: normals of that surface are off by the tangent's
-error only, and tangents of a spline through points 10 deg apart by less than a hundredth of a degree."""
 
 
 def _leaning(lean: Metric) -> tuple[Finding, ...]:

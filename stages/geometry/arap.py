@@ -111,10 +111,10 @@ def settled(rest: Sheet, start: Points2, *, still: float) -> Settled:
 
     Raises NoSolutionError if steps do not become as short as that.
     """
-    free, slots = _free(rest, start), _slots(rest)
+    free, slots = free_unknowns(rest, start), slots_of(rest)
     positions, factors, last = start, None, np.inf
     for _ in range(MOST_STEPS):
-        slope = _slope(rest, positions)
+        slope = slope_of(rest, positions)
         fresh = factors is None
         factors = factors or _factors(rest, positions, slots, free)
         step = np.zeros(2 * rest.count)
@@ -132,7 +132,7 @@ def settled(rest: Sheet, start: Points2, *, still: float) -> Settled:
     raise NoSolutionError("flattening as rigidly as possible", reached=longest, wanted=still, unit="mm")
 
 
-def _slope(rest: Sheet, positions: Array) -> Values:
+def slope_of(rest: Sheet, positions: Array) -> Values:
     """Return the derivatives of the energy by the coordinates, vertex by vertex."""
     f = maps(rest, positions)
     parts = np.einsum("mcd,mkd->mkc", (2.0 * rest.area)[:, None, None] * (f - _rotations(f)[0]), rest.by_corner)
@@ -140,7 +140,7 @@ def _slope(rest: Sheet, positions: Array) -> Values:
     return np.bincount(unknowns.ravel(), parts.ravel(), minlength=2 * rest.count)
 
 
-def _free(rest: Sheet, positions: Array) -> Indices:
+def free_unknowns(rest: Sheet, positions: Array) -> Indices:
     """Return the unknowns left when no motion of the whole is possible: a vertex is held, a far one on one line."""
     used = np.unique(rest.faces)
     away = np.abs(positions[used] - positions[used[0]])
@@ -150,7 +150,7 @@ def _free(rest: Sheet, positions: Array) -> Indices:
     return np.setdiff1d(unknowns, held)
 
 
-def _slots(rest: Sheet) -> tuple[csc_array, Whole]:
+def slots_of(rest: Sheet) -> tuple[csc_array, Whole]:
     """Return a matrix with the right places and, for each entry of the triangles' matrices, its place there."""
     unknowns = (2 * rest.faces[..., None] + np.arange(2)).reshape(-1, 6)
     rows, columns = (np.broadcast_to(x, (len(unknowns), 6, 6)).ravel()
@@ -165,7 +165,7 @@ def _factors(rest: Sheet, positions: Points2, slots: tuple[csc_array, Whole], fr
     """Return the factors of the second derivatives, made positive definite if they are not."""
     for convex in (False, True):
         pattern, places = slots
-        data = np.bincount(places, _second(rest, positions, convex=convex).ravel(), minlength=len(pattern.data))
+        data = np.bincount(places, second(rest, positions, convex=convex).ravel(), minlength=len(pattern.data))
         whole = csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
         factors = factorised(csc_array(whole[free][:, free]))
         if factors.positive:
@@ -173,7 +173,7 @@ def _factors(rest: Sheet, positions: Points2, slots: tuple[csc_array, Whole], fr
     raise NoSolutionError("flattening: part of the mesh is free to move", reached=0.0, wanted=1.0)
 
 
-def _second(rest: Sheet, positions: Points2, *, convex: bool) -> Array:
+def second(rest: Sheet, positions: Points2, *, convex: bool) -> Array:
     """Return the second derivatives of every triangle's energy, shape (m, 6, 6)."""
     r, total = _rotations(maps(rest, positions))
     quarter = np.stack([-r[:, 1], r[:, 0]], axis=1)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Points2, Values
+from stages.geometry.development import RulingMap
 from stages.geometry.flatmap import FlatPiece
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.strip import locate
@@ -52,6 +53,8 @@ class FlatStrip(ArrayValue):
 
 def _across(piece: FlatPiece, u: Values, v: Values) -> Points2:
     """Return d/du of the flat positions of one piece, from positions alone."""
+    if isinstance(piece, RulingMap):  # straight between both edges
+        return piece.chords(np.zeros_like(v), v, np.ones_like(v), v)
     x = chebyshev.chebpts1(ACROSS)
     nodes = (x + 1.0) / 2.0
     flat = piece.positions(np.repeat(nodes, v.size), np.tile(v, ACROSS)).reshape(ACROSS, v.size, 2)
@@ -69,6 +72,14 @@ class MappedEdge(ArrayValue):
     curve: PlaneCurve
     low: float
     high: float
+
+    @property
+    def breaks(self) -> Values:
+        """Where it is not smooth, ends included: at those of a curve that has them."""
+        own: Array = np.asarray(getattr(self.curve, "breaks", ()), dtype=np.float64)
+        inner = (own - self.low) / (self.high - self.low)
+        within = inner[(inner > LEAST_STRETCH) & (inner < 1.0 - LEAST_STRETCH)]
+        return np.concatenate([[0.0], np.sort(within), [1.0]])
 
     def at(self, t: Values) -> Points2:
         """Return the points at t, mm."""

@@ -41,13 +41,8 @@ from stages.geometry.ruled import RuledPatch, between
 
 
 @runtime_checkable
-class Chart(Protocol):
-    """A developable in the plane, with the places of its flat points in u and v."""
-
-    @property
-    def patch(self) -> RuledPatch:
-        """The surface."""
-        ...
+class Placing(Protocol):
+    """Where flat points are in u and v."""
 
     def places(self, points: Points2) -> Points2:
         """Return u and v of flat points; NaN where v is not defined (an apex)."""
@@ -58,11 +53,21 @@ class Chart(Protocol):
         ...
 
 
+@runtime_checkable
+class Chart(Placing, Protocol):
+    """A developable in the plane, with the places of its flat points in u and v."""
+
+    @property
+    def patch(self) -> RuledPatch:
+        """The surface."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Pulled(ArrayValue):
     """A curve of the plane as a curve of u and v."""
 
-    chart: Chart
+    chart: Placing
     edge: PlaneCurve
 
     @property

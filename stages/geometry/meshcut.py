@@ -135,9 +135,9 @@ def opened(mesh: Mesh, seam: Points3 | None = None) -> Opened:
             path = shortest(now, edges, free[0], np.concatenate(free[1:]))
         else:
             rest = sorted(set(range(len(loops))) - {int(i) for i in ends})
-            sides = tuple((_run(now, left), _run(now, right)[::-1]) for left, right in cuts)
+            sides = tuple((run_along(now, left), run_along(now, right)[::-1]) for left, right in cuts)
             return Opened(now, tuple(loops[i] for i in (*ends, *rest)), sides, original)
-        left, right = _halves(now, edges, path)
+        left, right = halves_along(now, edges, path)
         now, of = parted(now, edges, edges.of_half[left])
         if len(of) == len(original):
             raise NoSolutionError("a cut inside the mesh, which opens nothing", reached=1.0, wanted=2.0, unit="edges")
@@ -152,13 +152,13 @@ def _vertices(mesh: Mesh, cuts: list[tuple[Numbers, Numbers]]) -> Indices:
     return np.unique(np.concatenate([start[halves], end[halves]]))
 
 
-def _run(mesh: Mesh, halves: Indices) -> Numbers:
+def run_along(mesh: Mesh, halves: Indices) -> Numbers:
     """Return the vertices along half-edges that follow each other."""
     start, end = half_edges(mesh.faces)
     return np.append(start[halves], end[halves[-1:]])
 
 
-def _halves(mesh: Mesh, edges: Edges, path: Indices) -> tuple[Numbers, Numbers]:
+def halves_along(mesh: Mesh, edges: Edges, path: Indices) -> tuple[Numbers, Numbers]:
     """Return the half-edges along a path of vertices, and those against it from its end to its beginning."""
     start, _ = half_edges(mesh.faces)
     order = np.argsort(edges.of_half, kind="stable")
@@ -228,11 +228,11 @@ def along(mesh: Mesh, edges: Edges, seam: Points3, ends: tuple[Numbers, ...]) ->
         goals = np.concatenate([loop for i, loop in enumerate(ends) if i != first])
         goal = _nearest(mesh, goals, seam[-1])
         return shortest(mesh, edges, np.array([starts[first]]), np.array([goal]), weight)
-    first, last = (_snapped(mesh, edges, point, lengths.mean()) for point in (seam[0], seam[-1]))
+    first, last = (snapped(mesh, edges, point, lengths.mean()) for point in (seam[0], seam[-1]))
     return shortest(mesh, edges, np.array([first]), np.array([last]), weight)
 
 
-def _snapped(mesh: Mesh, edges: Edges, point: Vector3, edge_mm: float) -> int:
+def snapped(mesh: Mesh, edges: Edges, point: Vector3, edge_mm: float) -> int:
     """Return the vertex nearest to a point; one on the boundary if that is less than a mean edge farther."""
     every, border = np.arange(len(mesh.vertices)), np.unique(edges.ends[edges.count == 1])
     nearest = _nearest(mesh, every, point)

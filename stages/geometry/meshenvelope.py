@@ -48,13 +48,13 @@ class Edge(ArrayValue):
     def jet(self, v: Values, order: int) -> Array:
         """Return position and derivatives up to `order`, shape (order + 1, n, 3), mm."""
         t, width, family = self.low + v * (self.high - self.low), self.high - self.low, self.family
-        planes, turns = (_jet(series, t, width, order) for series in (family.planes, family.turns))
-        n, d, w, e = planes[..., :3], planes[..., 3], turns[..., :3], turns[..., 3]
+        every = _jet((family.planes, family.turns, self.guide, self.side[:, None]), t, width, order)
+        n, d, w, e = every[..., :3], every[..., 3], every[..., 4:7], every[..., 7]
         along = outer(n, w)
-        ruling = scaled(_jet(self.side[:, None], t, width, order)[..., 0], unit(along))
+        ruling = scaled(every[..., 11], unit(along))
         if not self.whole:
             return np.asarray(family.extent * derivatives(ruling))
-        guided = inner(along, _jet(self.guide, t, width, order))
+        guided = inner(along, every[..., 8:11])
         sums = scaled(d, outer(w, along)) + scaled(e, outer(along, n)) + scaled(guided, along)
         jets = family.extent * derivatives(scaled(power(inner(along, along), -1.0), sums) + ruling)
         jets[0] += family.centre
@@ -70,13 +70,18 @@ class Edge(ArrayValue):
         return self.replace(low=self.low + float(low) * width, high=self.low + float(high) * width)
 
 
-def _jet(series: Array, t: Values, width: float, order: int) -> Array:
-    """Return the power series at t of Chebyshev series (k, c), by a parameter that takes 1 over `width`."""
-    jets = []
-    for k in range(order + 1):
-        jets.append(chebyshev.chebval(t, series).T * width**k)
-        series = np.asarray(chebyshev.chebder(series), dtype=np.float64) if len(series) > 1 else np.zeros_like(series)
-    return taylor(np.stack(jets))
+def _jet(series: Sequence[Array], t: Values, width: float, order: int) -> Array:
+    """Return the power series at t of Chebyshev series, each (k, c), side by side, by a parameter of 1 over `width`.
+
+    All derivatives of all series are sums of the same polynomials, which are evaluated once.
+    """
+    terms = max(map(len, series))
+    whole = np.concatenate([np.pad(one, ((0, terms - len(one)), (0, 0))) for one in series], axis=1)
+    rows = [whole]
+    for _ in range(order):
+        slopes = chebyshev.chebder(rows[-1]) * width if terms > 1 else np.zeros_like(whole)
+        rows.append(np.pad(slopes, ((0, terms - len(slopes)), (0, 0))))
+    return taylor(np.asarray(chebyshev.chebvander(t, terms - 1) @ np.stack(rows)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -29,6 +29,15 @@ INSIDE, AT_EDGE = 30, 50
 """Neighbours: twice the 15 coefficients; one-sided fits lose a third of a digit with fewer than 50."""
 RINGS_INSIDE, RINGS_AT_EDGE = 3, 6
 """So many edges away a regular mesh has 36 and, to one side, 63 others."""
+WIDE_DEGREE = 6
+WIDE_INSIDE, WIDE_AT_EDGE = 56, 94
+WIDE_RINGS_INSIDE, WIDE_RINGS_AT_EDGE = 4, 8
+"""The same for what needs more digits: of an ellipsoid of 10 000 triangles degree 4 leaves 3e-6 rad, this 1e-7."""
+SIZES = {
+    DEGREE: ((RINGS_INSIDE, INSIDE), (RINGS_AT_EDGE, AT_EDGE)),
+    WIDE_DEGREE: ((WIDE_RINGS_INSIDE, WIDE_INSIDE), (WIDE_RINGS_AT_EDGE, WIDE_AT_EDGE)),
+}
+"""Rings and neighbours for fits of these degrees, inside and at an edge of the mesh."""
 FLAT_TO = 18
 """Neighbours of the quadratic fit that sets the plane: three times its coefficients."""
 REACH = 2.1
@@ -61,6 +70,7 @@ class SurfaceFit(ArrayValue):
     residual: standard deviation of the heights from the fit, mm, the coefficients allowed for; infinite where the
         neighbours do not determine all coefficients.
     coarser: the same of the fit of one degree less.  relief: the same of a plane: how much shape there is.
+    heights: of the fitted surface over the place that it was fitted around, mm, along the normal of its plane.
     """
 
     normals: Points3
@@ -71,6 +81,7 @@ class SurfaceFit(ArrayValue):
     residual: Values
     coarser: Values
     relief: Values
+    heights: Values
 
     def bending(self, at: Indices, along: Points3) -> Values:
         """Return the normal curvature along unit tangents, 1/mm, positive towards the normal."""
@@ -80,20 +91,29 @@ class SurfaceFit(ArrayValue):
         return np.asarray((xx * x * x + 2.0 * xy * x * y + yy * y * y) / steep)
 
 
-def stars(mesh: Mesh, edges: Edges) -> tuple[Stars, ...]:
-    """Return the neighbours of the vertices inside and of those at an edge of the mesh."""
-    n = len(mesh.vertices)
-    a, b = edges.ends.T
-    if len(np.unique(mesh.faces)) != n:
+def stars(mesh: Mesh, edges: Edges, degree: int = DEGREE) -> tuple[Stars, ...]:
+    """Return the neighbours of the vertices inside and of those at an edge of the mesh, for fits of one of `SIZES`."""
+    if len(np.unique(mesh.faces)) != len(mesh.vertices):
         raise ValueError("a vertex belongs to no face")
-    links = csr_array((np.ones(2 * len(a), dtype=np.int32), (np.append(a, b), np.append(b, a))), shape=(n, n))
-    at_edge = np.zeros(n, dtype=bool)
-    at_edge[edges.ends[edges.count == 1]] = True
+    links = _links(mesh, edges)
     return tuple(
-        _nearest(mesh.vertices, links, np.flatnonzero(rows), rings, count)
-        for rows, rings, count in ((~at_edge, RINGS_INSIDE, INSIDE), (at_edge, RINGS_AT_EDGE, AT_EDGE))
-        if rows.any()
+        _nearest(mesh.vertices, links, np.flatnonzero(some), *size)
+        for some, size in zip(_inside_and_at_edge(mesh, edges), SIZES[degree], strict=True)
+        if some.any()
     )
+
+
+def _links(mesh: Mesh, edges: Edges) -> csr_array:
+    """Return the graph of the edges."""
+    n, (a, b) = len(mesh.vertices), edges.ends.T
+    return csr_array((np.ones(2 * len(a), dtype=np.int32), (np.append(a, b), np.append(b, a))), shape=(n, n))
+
+
+def _inside_and_at_edge(mesh: Mesh, edges: Edges) -> tuple[Mask, Mask]:
+    """Return which vertices are inside and which at an edge of the mesh."""
+    at_edge = np.zeros(len(mesh.vertices), dtype=bool)
+    at_edge[edges.ends[edges.count == 1]] = True
+    return ~at_edge, at_edge
 
 
 def _nearest(vertices: Array, links: csr_array, rows: Indices, rings: int, count: int) -> Stars:
@@ -121,6 +141,33 @@ def fitted(mesh: Mesh, around: tuple[Stars, ...], degree: int = DEGREE) -> Surfa
     rows = np.concatenate([star.rows for star in around])
     normals, order = _rough_normals(mesh), np.argsort(rows)
     parts = [_fitted(mesh.vertices, block, normals, degree) for star in around for block in _blocks(star)]
+    return _in_order(parts, order)
+
+
+def fitted_at(mesh: Mesh, edges: Edges, places: Points3, beside: Indices, degree: int = WIDE_DEGREE) -> SurfaceFit:
+    """Return the surface fitted around places near the mesh, each to the neighbours of a vertex beside it.
+
+    The normal is that at the foot of the place on the surface, as far as the quadratic fit knows where that is.
+    """
+    links, normals = _links(mesh, edges), _rough_normals(mesh)
+    parts, order = list[SurfaceFit](), list[Whole]()
+    for some, size in zip(_inside_and_at_edge(mesh, edges), SIZES[WIDE_DEGREE], strict=True):
+        mine = np.flatnonzero(some[beside])
+        for block in np.split(mine, range(BLOCK, len(mine), BLOCK)) if len(mine) else ():
+            star = _with_itself(_nearest(mesh.vertices, links, beside[block], *size))
+            parts.append(_fitted_about(mesh.vertices, star, places[block], normals, degree))
+            order.append(block)
+    return _in_order(parts, np.argsort(np.concatenate(order)))
+
+
+def _with_itself(star: Stars) -> Stars:
+    """Return the neighbours with the vertex among them, as the first."""
+    first = np.ones((len(star.rows), 1))
+    return Stars(star.rows, np.hstack([star.rows[:, None], star.others]), np.hstack([first, star.used]))
+
+
+def _in_order(parts: list[SurfaceFit], order: Whole) -> SurfaceFit:
+    """Return fits of several vertices each as one, in another order."""
     names = SurfaceFit.__dataclass_fields__
     return SurfaceFit(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))
 
@@ -146,7 +193,12 @@ def _rough_normals(mesh: Mesh) -> Points3:
 
 
 def _fitted(vertices: Points3, star: Stars, normals: Points3, degree: int) -> SurfaceFit:
-    away = vertices[star.others] - vertices[star.rows][:, None]
+    return _fitted_about(vertices, star, vertices[star.rows], normals, degree)
+
+
+def _fitted_about(vertices: Array, star: Stars, places: Array, normals: Array, degree: int) -> SurfaceFit:
+    """Return the surfaces around places of their own, to the neighbours of the vertices beside them."""
+    away = vertices[star.others] - places[:, None]
     few = min(FLAT_TO, away.shape[1])
     flat = _polynomial(away[:, :few], star.used[:, :few], normals[star.rows], 2)
     return _polynomial(away, star.used, flat.normals, degree)
@@ -167,12 +219,12 @@ def _polynomial(away: Array, used: Array, z: Points3, degree: int) -> SurfaceFit
         np.sqrt(left[terms] / (total * np.maximum(1.0 - terms / count, 1.0 / count)))
         for terms in (_terms(degree), _terms(degree - 1), _terms(1))
     ]
-    spreads[0] = np.where(sound & (count > _terms(degree)), spreads[0], np.inf)
+    residual = np.where(sound & (count > _terms(degree)), spreads[0], np.inf)
     slope = np.einsum("na,nab->nb", c[:, 1:3], inverse)
     form = np.stack([2.0 * c[:, 3], c[:, 4], c[:, 4], 2.0 * c[:, 5]], axis=1).reshape(-1, 2, 2)
     second = np.einsum("nac,nab,nbd->ncd", inverse, form, inverse).reshape(-1, 4)[:, [0, 1, 3]]
     normals = unit(z - slope[:, :1] * x - slope[:, 1:] * y)
-    return SurfaceFit(normals, x, y, slope, second, *spreads)
+    return SurfaceFit(normals, x, y, slope, second, residual, spreads[1], spreads[2], c[:, 0])
 
 
 def _evened(local: Array, used: Array, count: Values) -> Array:

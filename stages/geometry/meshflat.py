@@ -15,13 +15,15 @@ from typing import Literal
 
 import numpy as np
 
-from stages.geometry.arap import Sheet, settled, sheet, strains
+from stages.geometry.arap import Sheet, sheet, strains
+from stages.geometry.arapkept import settled_with
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values
 from stages.geometry.intrinsic import conformal, laid
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshfit import SurfaceFit, fitted, stars
 from stages.geometry.meshlengths import chords, curved, mended
 from stages.geometry.meshtopology import Edges, edges_of
+from stages.geometry.ties import Ties, no_ties
 
 Kind = Literal["curved", "chord"]
 
@@ -65,11 +67,13 @@ def noise(fit: SurfaceFit) -> float:
     return float(np.median(known)) if len(known) else float(np.inf)
 
 
-def at_rest(mesh: Mesh, edges: Edges, lengths: Array, *, kind: Kind, noise_mm: float, accuracy: float) -> MeshMap:
-    """Return the mesh laid flat on given edge lengths."""
+def at_rest(
+    mesh: Mesh, edges: Edges, lengths: Array, ties: Ties | None = None, *, kind: Kind, noise_mm: float, accuracy: float
+) -> MeshMap:
+    """Return the mesh laid flat on given edge lengths; ties: equations between those that hold exactly."""
     rest = resting(mesh, edges, lengths)
     start = conformal(mesh.vertices, mesh.faces, laid(by_side(edges, lengths)))
-    found = settled(rest, start, still=accuracy)
+    found = settled_with(rest, start, no_ties() if ties is None else ties, still=accuracy)
     left = strains(rest, found.positions)
     return MeshMap(found.positions, lengths, left, noise_mm, kind, found.step_mm, found.energy_mm2)
 

@@ -64,6 +64,15 @@ def edges_of(mesh: Mesh) -> Edges:
     return Edges(np.stack([keys // n, keys % n], axis=1), of_half, count)
 
 
+def edge_numbers(edges: Edges, pairs: Numbers) -> Numbers:
+    """Return the numbers of the edges between pairs of vertices, shape (k, 2); -1 where there is no edge."""
+    n = int(edges.ends.max(initial=0)) + 1
+    low, high = np.sort(pairs, axis=1).T
+    keys = edges.ends[:, 0] * n + edges.ends[:, 1]
+    at = np.minimum(np.searchsorted(keys, low * n + high), len(keys) - 1)
+    return np.where((keys[at] == low * n + high) & (high < n), at, -1)
+
+
 def linked(count: int, one: Indices, other: Indices) -> tuple[int, Numbers]:
     """Return the number of connected components of a graph, and that of each of its `count` nodes."""
     graph = coo_array((np.ones(len(one), dtype=np.int8), (one, other)), shape=(count, count))

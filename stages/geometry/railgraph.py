@@ -29,11 +29,14 @@ from stages.geometry.railzero import Field, Lines, Place, Zeros, angles
 Move = Literal["along", "on_a", "on_b"]
 CONES: tuple[Move, ...] = ("on_a", "on_b")
 MOVES: tuple[Move, ...] = ("along", *CONES)
+Cell = tuple[int, int]
 State = tuple[Place, Move]
 """A place of the lattice (a zero, or ("corner", i, j)) and the move one is in there."""
 
-FOLD = 1e3
-"""What a fold costs beside its angle in degrees: more than all other costs together, so that fewest folds win."""
+FOLD = 1e6
+"""What a fold costs beside its angle: more than all other costs together, so that fewest folds win."""
+ANGLE = 1e3
+"""What a degree of folding costs: a smaller fold is worth further pieces, but for the last 1e-5 deg."""
 CONE = 1e-3
 """What a degree of turning of a cone costs: ruled pieces are preferred, as cones bend sharply at their apex."""
 START = 1e-2
@@ -94,13 +97,16 @@ class _Graph:
             self.edges.append((tail, number.setdefault(end, len(number)), cost + STEP))
 
 
-def way(found: Field, every: Zeros, rules: Rules) -> Way:
-    """Return the cheapest way from the first ruling to the last that keeps the rules."""
+def way(found: Field, every: Zeros, rules: Rules, folds: Iterable[Cell] | None = None) -> Way:
+    """Return the cheapest way from the first ruling to the last that keeps the rules.
+
+    folds: the corners of the lattice that may fold if the rules allow it; unless given, every fourth each way.
+    """
     graph = _Graph()
     ends = from_shared_ends(found, every) if rules.meeting else ()
     for first, second in (*chords(found, every), *met(every), *ends):
         graph.add((first, "along"), (second, "along"), STEP)
-    corners = _corners(found, every, rules)
+    corners = _corners(found, every, rules, coarse(found) if folds is None else folds)
     for place, cost in corners.items():
         graph.add((place, "on_a"), (place, "on_b"), cost)
         graph.add((place, "on_b"), (place, "on_a"), cost)
@@ -141,9 +147,14 @@ def _over_both_breaks(found: Field, rules: Rules) -> dict[tuple[State, State], f
             for first, second in product(CONES, CONES):
                 fold = float(angles(before[first], after[second]))
                 if fold <= max(rules.fold_rad, SMOOTH):
-                    price = START if fold <= SMOOTH else FOLD + float(np.degrees(fold))
+                    price = START if fold <= SMOOTH else fold_cost(fold)
                     steps[(("corner", i, j), first), (("corner", i + 1, j + 1), second)] = price
     return steps
+
+
+def fold_cost(angle: float) -> float:
+    """Return what a fold by an angle in rad costs."""
+    return FOLD + ANGLE * float(np.degrees(angle))
 
 
 def _kinks(of: Lines) -> list[int]:
@@ -153,23 +164,23 @@ def _kinks(of: Lines) -> list[int]:
     return kinks
 
 
-def _corners(found: Field, every: Zeros, rules: Rules) -> dict[Place, float]:
+def _corners(found: Field, every: Zeros, rules: Rules, folds: Iterable[Cell]) -> dict[Place, float]:
     """Return the lattice corners at which a path may turn from one cone to another, with their costs."""
     n, m = found.F.shape
     zero = {(int(i), int(j)) for i, j in np.argwhere((found.F == 0.0) & (found.warp <= SMOOTH))}
-    costs = dict.fromkeys(zero if len(zero) <= MANY * (n + m) else zero.intersection(_coarse(found)), START)
+    costs = dict.fromkeys(zero if len(zero) <= MANY * (n + m) else zero.intersection(coarse(found)), START)
     for corner in _beside(found, every) if rules.beside else ():
         costs.setdefault(corner, START + CONE * float(np.degrees(found.warp[corner])))
     if rules.fold_rad > 0.0:
-        for corner in _coarse(found):
+        for corner in folds:
             if found.warp[corner] <= rules.fold_rad:
-                costs.setdefault(corner, FOLD + float(np.degrees(found.warp[corner])))
+                costs.setdefault(corner, fold_cost(found.warp[corner]))
     costs |= {(0, 0): 0.0, (n - 1, m - 1): 0.0}
     return {("corner", i, j): cost for (i, j), cost in costs.items()}
 
 
 MANY = 4
-"""Zeros on more than so many lines' worth of corners are a plane or one cone: coarse corners do."""
+"""Zeros at more than so many lines' worth of corners are a plane or one cone."""
 
 
 def _beside(found: Field, every: Zeros) -> set[tuple[int, int]]:
@@ -184,19 +195,18 @@ def _beside(found: Field, every: Zeros) -> set[tuple[int, int]]:
     return {corner for corner in both if found.warp[corner] < BESIDE}
 
 
-def _coarse(found: Field) -> Iterable[tuple[int, int]]:
+def coarse(found: Field) -> Iterable[Cell]:
     """Return every fourth corner each way, and those at breaks and ends."""
     return [(i, j) for i in _coarse_lines(found.a) for j in _coarse_lines(found.b)]
 
 
 def _coarse_lines(of: Lines) -> list[int]:
     breaks = np.nonzero(~of.inside)[0]
-    last = of.value.size - 1
-    return sorted({*range(0, last, COARSE), last, *breaks.tolist(), *(breaks + 1).tolist()})
+    return sorted({*of.even[::COARSE].tolist(), int(of.even[-1]), *breaks.tolist(), *(breaks + 1).tolist()})
 
 
 COARSE = 4
-"""Folds may lie on every fourth line: their exact place is found later."""
+"""Folds may lie on every fourth line: `railfolds` finds their exact place."""
 
 
 def _add_cones(graph: _Graph, found: Field, at: Mapping[Place, tuple[float, float]], move: Move, rules: Rules) -> None:
@@ -239,7 +249,7 @@ def _costs(turns: Array, moving: Lines, rules: Rules) -> list[_Costs]:
     """Return the costs of the cones along every line of the rail at rest, by how they turn from line to line."""
     inside = moving.inside
     fold = ~inside & (turns > SMOOTH)
-    step = np.where(fold, FOLD + np.degrees(turns), np.where(inside, CONE * np.degrees(turns), 0.0))
+    step = np.where(fold, FOLD + ANGLE * np.degrees(turns), np.where(inside, CONE * np.degrees(turns), 0.0))
     bent = inside & (turns > SMOOTH) if not rules.cones else np.zeros_like(fold)
     barred = np.cumsum(bent | (fold & (turns > rules.fold_rad)), axis=1)
     cost = np.cumsum(step, axis=1)

@@ -17,7 +17,8 @@ from stages.geometry.curves import Curve, restrict
 from stages.geometry.railbound import Bound, least_fold, least_fold_round
 from stages.geometry.railchords import shares_an_end
 from stages.geometry.railcorners import TINY, Leg
-from stages.geometry.railgraph import Rules, way
+from stages.geometry.railfolds import folded_way
+from stages.geometry.railgraph import Rules, Way, way
 from stages.geometry.railpath import legs, solved
 from stages.geometry.railzero import Field, Zeros, field, zeros
 from stages.geometry.roots import chord_zeros
@@ -66,8 +67,7 @@ def _on_lattices(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Strip 
     Corners that the lattice promised and that are not there are looked for on twice as many lines, then done without.
     """
     for lines, beside in ((count, True), (2 * count, True), (count, False)):
-        found = field(rail_a, rail_b, lines)
-        best = way(found, zeros(found), replace(rules, beside=beside))
+        best = _way(rail_a, rail_b, replace(rules, beside=beside), lines)
         if not best.stops:
             return None
         try:
@@ -75,6 +75,14 @@ def _on_lattices(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Strip 
         except NoSolutionError:
             continue
     return None
+
+
+def _way(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Way:
+    """Return the best way over lattices, with folds as small as they can be where they are allowed."""
+    if rules.fold_rad > 0.0:
+        return folded_way(rail_a, rail_b, rules, count)
+    found = field(rail_a, rail_b, count)
+    return way(found, zeros(found), rules)
 
 
 def closed_strip(rail_a: Rail, rail_b: Rail, rules: Rules) -> Strip | None:
@@ -94,7 +102,7 @@ def closed_strip(rail_a: Rail, rail_b: Rail, rules: Rules) -> Strip | None:
 def _from_corner(strip: Strip, rail_a: Rail, rail_b: Rail, rules: Rules) -> Strip:
     """Return the strip begun at its first corner instead of inside a leg, if that leaves fewer legs."""
     t, s = (
-        _snapped(as_given(rail, start)(float(x)))
+        snapped(as_given(rail, start)(float(x)))
         for rail, start, x in zip((strip.rail_a, strip.rail_b), strip.starts, strip.legs[0].knots[-1], strict=True)
     )
     moved = open_strip(turned(rail_a, t), turned(rail_b, s), rules)
@@ -103,7 +111,7 @@ def _from_corner(strip: Strip, rail_a: Rail, rail_b: Rail, rules: Rules) -> Stri
     return replace(moved, starts=(t % len(rail_a), s % len(rail_b)), backwards_b=strip.backwards_b)
 
 
-def _snapped(x: float) -> float:
+def snapped(x: float) -> float:
     """Return a parameter, that of the break that it lies on but for rounding."""
     return float(round(x)) if abs(x - round(x)) <= TINY else x
 

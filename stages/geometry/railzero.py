@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.geometry.arrays import Array, ArrayValue, Indices, Points3, Values, dot, norm
+from stages.geometry.arrays import Array, ArrayValue, Indices, Numbers, Points3, Values, dot, locked, norm
 from stages.geometry.curves import Curve
 from stages.geometry.roots import Function, bracketed
 
@@ -29,18 +29,16 @@ NOISE = 1e-13
 class Lines(ArrayValue):
     """Lattice lines across one rail, both ends of each smooth piece among them: a break has two.
 
-    value: parameter, the number of the piece plus the place in it.  point, slope: there, shape (n, 3).
+    piece: the one that each line lies on.  value: parameter, the number of the piece plus the place in it.
+    point, slope: there, shape (n, 3).  even: the numbers of the lines that divide their piece evenly.
     """
 
     pieces: tuple[Curve, ...]
+    piece: Indices
     value: Values
     point: Points3
     slope: Points3
-
-    @property
-    def piece(self) -> Indices:
-        """The piece that each line lies on; all have the same number of lines."""
-        return np.repeat(np.arange(len(self.pieces)), self.value.size // len(self.pieces))
+    even: Numbers
 
     @property
     def inside(self) -> Flags:
@@ -54,19 +52,41 @@ class Lines(ArrayValue):
         return place
 
 
-def lines(pieces: Sequence[Curve], count: int) -> Lines:
-    """Return about `count` lines, at least `LEAST` intervals to a piece."""
+NO_EXTRA = locked(np.zeros(0))
+
+
+def lines(pieces: Sequence[Curve], count: int, extra: Array = NO_EXTRA) -> Lines:
+    """Return about `count` lines, at least `LEAST` intervals to a piece, and one at each of the extra parameters."""
     each = max(LEAST, -(-count // len(pieces)))
-    local = np.linspace(0.0, 1.0, each + 1)
-    jets = [curve.jet(local, 1) for curve in pieces]
+    even = np.linspace(0.0, 1.0, each + 1)
+    places = [_with_extra(even, extra - number) for number in range(len(pieces))]
+    jets = [curve.jet(place, 1) for curve, place in zip(pieces, places, strict=True)]
+    sizes = [place.size for place in places]
+    piece = np.repeat(np.arange(len(pieces)), sizes)
+    starts = np.cumsum([0, *sizes[:-1]])
     return Lines(
         tuple(pieces),
-        np.repeat(np.arange(len(pieces)), each + 1) + np.tile(local, len(pieces)),
+        piece,
+        piece + np.concatenate(places),
         np.concatenate([jet[0] for jet in jets]),
         np.concatenate([jet[1] for jet in jets]),
+        np.concatenate([start + np.searchsorted(place, even) for start, place in zip(starts, places, strict=True)]),
     )
 
 
+def _with_extra(even: Array, extra: Array) -> Values:
+    """Return even places in [0, 1] and those of the extra ones that are no copies of them or of each other."""
+    extra = extra[(extra > 0.0) & (extra < 1.0)]
+    if not extra.size:
+        return even
+    extra = np.unique(np.round(extra / CLEAR)) * CLEAR
+    after = np.searchsorted(even, extra)
+    clear = np.minimum(extra - even[after - 1], even[after] - extra) > CLEAR
+    return np.union1d(even, extra[clear])
+
+
+CLEAR = 1e-10
+"""Lines closer than this are one: a hundred times what parameters are rounded to where they are told apart."""
 LEAST = 8
 """Intervals that even a short piece of many has: a cubic's tangents turn by three inflections at most."""
 
@@ -87,9 +107,15 @@ class Field(ArrayValue):
     turn_b: Array
 
 
-def field(rail_a: Sequence[Curve], rail_b: Sequence[Curve], count: int) -> Field:
-    """Return the lattice of about `count` lines on each rail."""
-    a, b = lines(rail_a, count), lines(rail_b, count)
+def field(
+    rail_a: Sequence[Curve],
+    rail_b: Sequence[Curve],
+    count: int,
+    extra_a: Array = NO_EXTRA,
+    extra_b: Array = NO_EXTRA,
+) -> Field:
+    """Return the lattice of about `count` lines on each rail, and those at the extra parameters."""
+    a, b = lines(rail_a, count, extra_a), lines(rail_b, count, extra_b)
     p = b.point[None] - a.point[:, None]
     normal_a, normal_b = np.cross(p, a.slope[:, None]), np.cross(p, b.slope[None])
     F = -dot(normal_a, np.broadcast_to(b.slope[None], p.shape))

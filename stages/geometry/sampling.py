@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Points2, Values, cross2, norm
+from stages.geometry.mapped import MappedEdge
 from stages.geometry.plane import PlaneCurve
+from stages.geometry.planespline import Spline
 
 Intervals = NDArray[np.bool_]
 """One truth per interval of a grid, one fewer than nodes."""
@@ -110,8 +112,9 @@ def length_and_area(edges: Sequence[Resolved], *, accuracy: float) -> tuple[floa
 
 
 def _integrals(edge: Resolved, middle: Array) -> Array:
-    """Return length and area swept about `middle`, by two rules, shape (2, 2)."""
-    return np.array([_gauss(edge.curve, edge.t, nodes, middle) for nodes in (COARSE_NODES, FINE_NODES)])
+    """Return length and area swept about `middle`, by two rules, shape (2, 2); splines piece by piece."""
+    breaks = np.union1d(edge.t, edge.curve.breaks) if isinstance(edge.curve, Spline | MappedEdge) else edge.t
+    return np.array([_gauss(edge.curve, breaks, nodes, middle) for nodes in (COARSE_NODES, FINE_NODES)])
 
 
 def _gauss(edge: PlaneCurve, breaks: Values, nodes: int, middle: Array) -> Array:

@@ -11,7 +11,7 @@ from math import factorial
 
 import numpy as np
 
-from stages.geometry.arrays import Array, dot
+from stages.geometry.arrays import Array
 
 
 def taylor(jet: Array) -> Array:
@@ -39,8 +39,9 @@ def slope(series: Array) -> Array:
 
 
 def product(a: Array, b: Array) -> Array:
-    """Return the product of two scalars."""
-    return np.stack([np.sum([a[i] * b[k - i] for i in range(k + 1)], axis=0) for k in range(_shorter(a, b))])
+    """Return the product of two scalars, or of a scalar and a vector whose axis it has."""
+    found: Array = np.einsum("i...,ik...->k...", a[: _shorter(a, b)], _shifted(a, b))
+    return found
 
 
 def scaled(factor: Array, vector: Array) -> Array:
@@ -50,12 +51,26 @@ def scaled(factor: Array, vector: Array) -> Array:
 
 def inner(a: Array, b: Array) -> Array:
     """Return the dot product of two vectors."""
-    return np.stack([np.sum([dot(a[i], b[k - i]) for i in range(k + 1)], axis=0) for k in range(_shorter(a, b))])
+    found: Array = np.einsum("i...c,ik...c->k...", a[: _shorter(a, b)], _shifted(a, b))
+    return found
 
 
 def outer(a: Array, b: Array) -> Array:
     """Return the cross product of two vectors."""
-    return np.stack([np.sum([np.cross(a[i], b[k - i]) for i in range(k + 1)], axis=0) for k in range(_shorter(a, b))])
+    forward, backward = [1, 2, 0], [2, 0, 1]
+    first, second = a[: _shorter(a, b)], _shifted(a, b)
+    found: Array = np.einsum("i...c,ik...c->k...c", first[..., forward], second[..., backward])
+    found -= np.einsum("i...c,ik...c->k...c", first[..., backward], second[..., forward])
+    return found
+
+
+def _shifted(a: Array, b: Array) -> Array:
+    """Return b moved by i places along its orders, i in the first axis: what term i of a series a is multiplied by."""
+    count = _shorter(a, b)
+    before = np.concatenate([np.zeros((count - 1, *b.shape[1:])), b[:count]])
+    order = np.arange(count)
+    moved: Array = before[count - 1 + order[None, :] - order[:, None]]
+    return moved
 
 
 def _shorter(a: Array, b: Array) -> int:

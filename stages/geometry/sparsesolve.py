@@ -40,7 +40,8 @@ class Factors:
 def factorised(matrix: csc_array) -> Factors:
     """Return the factors of a symmetric (Hermitian) matrix.
 
-    Raises NoSolutionError if it is singular: a part of the mesh hangs on by a single vertex.
+    Raises NoSolutionError if a pivot is 0: a part of the mesh is free to move.  Rounding may hide it, and does where
+    triangles hang together by a vertex; such meshes are for `meshtopology.pinched` to find.
     """
     try:
         lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

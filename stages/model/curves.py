@@ -137,6 +137,12 @@ class HelixSpec(Table, frozen=True, kw_only=True):
             yield Trouble("radius", f"{float(self.radius):g} mm", "a radius must be above 0")
         if self.turns <= 0:
             yield Trouble("turns", f"{float(self.turns):g}", "the number of turns must be above 0")
+        if self.turns > MOST_TURNS:
+            yield Trouble("turns", f"{float(self.turns):g}", f"at most {MOST_TURNS} turns")
+
+
+MOST_TURNS = 1000
+"""More turns than any sheet takes; each costs as much as a curve of its own."""
 
 
 class CurveSpec(Table, frozen=True, kw_only=True, omit_defaults=True):

@@ -4,6 +4,7 @@ The names of the fields are those of the job file.  An elbow is a set: several b
 """
 
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import Annotated, Literal
 
 from msgspec import Meta, field
@@ -85,7 +86,7 @@ class Saddle(Table, frozen=True, kw_only=True):
         yield from _crossing_angle(self.angle)
 
 
-def _crossing_angle(angle: Angle) -> Iterator[Trouble]:
+def _crossing_angle(angle: Fraction) -> Iterator[Trouble]:
     if not 0 < angle < HALF_TURN:
         yield Trouble("angle", f"{float(angle):g} deg", "between 0 and 180 deg")
 

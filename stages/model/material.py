@@ -1,10 +1,12 @@
 """The sheet that parts are made of, and a part together with it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from stages.geometry.mesh import Mesh
 from stages.model.cadface import CadBody
 from stages.model.kfactor import KFactor
+from stages.model.meshes import MeshNormals
 from stages.model.part import PartSpec
 from stages.model.process import Process
 from stages.model.report import Finding
@@ -34,6 +36,7 @@ class Part:
     """A part as asked for, its material, and how it is cut: what the stages start from.
 
     body: what the file holds that the part is described by, in mm; None: the specification says it all.
+    meshes: those that the specification points at besides, in mm.
     remarks: what was found out about that file before construct.
     """
 
@@ -42,6 +45,7 @@ class Part:
     process: Process = field(default_factory=Process)
     body: Mesh | CadBody | None = None
     remarks: tuple[Finding, ...] = ()
+    meshes: Mapping[MeshNormals, Mesh] = field(default_factory=dict)
 
     @property
     def name(self) -> str:

@@ -9,6 +9,7 @@ from stages.model.curves import Table, Trouble
 from stages.model.scalars import Point
 
 MeshUnit = Literal["mm", "cm", "m", "um", "in", "ft"]
+Polyline = Annotated[tuple[Point, ...], Meta(min_length=2)]
 
 
 class MeshFile(Table, frozen=True, kw_only=True, tag_field="kind", tag="mesh"):
@@ -18,14 +19,39 @@ class MeshFile(Table, frozen=True, kw_only=True, tag_field="kind", tag="mesh"):
     units: of the file; absent: what the file says (3MF does), else the units of the job.
     recognise: planes, cylinders, cones and rulings are looked for, and what is found is unrolled by them.
     seam: points, in the units of the job, near which a closed or annular mesh is cut; absent: the shortest way.
+    keep: lengths that the pattern keeps exactly: of the whole outline, or along the edges near lines of such points.
+    cuts: lines of such points near which it is slit, from its boundary inwards; a part with cuts is not recognised.
     """
 
     file: Annotated[str, Meta(min_length=1, max_length=500)]
     units: MeshUnit | None = None
     recognise: bool = True
-    seam: Annotated[tuple[Point, ...], Meta(min_length=2)] | None = None
+    seam: Polyline | None = None
+    keep: Literal["none", "outline"] | tuple[Polyline, ...] = "none"
+    cuts: tuple[Polyline, ...] = ()
+
+    @property
+    def kept_lines(self) -> tuple[tuple[Point, ...], ...]:
+        """Return the lines near which lengths are kept, where lines are given."""
+        return () if isinstance(self.keep, str) else self.keep
 
     def troubles(self) -> Iterator[Trouble]:
-        """Yield a seam without length."""
-        if self.seam is not None and len(set(self.seam)) == 1:
-            yield Trouble("seam", "all its points coincide", "give at least two different points")
+        """Yield lines without length."""
+        lines = {f"keep[{i}]": line for i, line in enumerate(self.kept_lines)}
+        lines |= {f"cuts[{i}]": line for i, line in enumerate(self.cuts)}
+        if self.seam is not None:
+            lines["seam"] = self.seam
+        for key, line in lines.items():
+            if len(set(line)) == 1:
+                yield Trouble(key, "all its points coincide", "give at least two different points")
+
+
+class MeshNormals(Table, frozen=True, kw_only=True):
+    """A mesh that a curve lies on, to take its normals from.
+
+    file: seen from the job file; names that begin with "sample:" are meshes that come with planish.
+    units: of the file; absent: what the file says (3MF does), else the units of the job.
+    """
+
+    file: Annotated[str, Meta(min_length=1, max_length=500)]
+    units: MeshUnit | None = None

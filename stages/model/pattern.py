@@ -25,6 +25,9 @@ class Contour:
     name: str = ""
 
 
+LETTER_WIDTH = 1.0
+"""Width of a letter in heights: the widest letters of the fonts that readers put in for STANDARD."""
+
 MarkLayer = Literal["MARK", "BEND_UP", "BEND_DOWN", "ROLL"]
 
 

@@ -17,7 +17,8 @@ class Rails(Table, frozen=True, kw_only=True, tag_field="kind", tag="rails"):
     Open rails run from first point to last as given; of closed ones the seam and the sense are found.
     folds: whether the strip may fold along rulings where nothing smooth leads on.
     max_warp: folds of at most this angle are always allowed.
-    min_radius: a strip that bends more sharply is refused; so, above 0, is any cone with its apex on a rail.
+    min_radius: above 0, a strip without cones is taken where there is one, else the best; it is refused if it has a
+    cone (with its apex on a rail it bends to nothing) or if it bends more sharply along a rail.
     """
 
     rail_a: CurveSpec

@@ -9,6 +9,7 @@ unrolls alike whatever its face.
 from dataclasses import dataclass
 from itertools import pairwise
 
+from stages.geometry.meshbends import MeshBends
 from stages.geometry.turning import FLAT, FOLD, Turning
 from stages.model.face import Face
 from stages.model.report import Finding
@@ -42,13 +43,32 @@ class Layers:
 
 def layers(face: Face, bends: Turning, thickness_mm: float) -> Layers | Finding:
     """Return where the sheet lies, or the finding that the surface has no inner and outer face."""
-    side = face
-    if face in ("inner", "outer"):
-        both = bends_both_ways(bends)
-        if both is not None:
-            return both
-        towards = sum(stretch.angle_rad for stretch in bends.stretches) >= 0.0
-        side = "plus" if (face == "inner") == towards else "minus"
+    towards = sum(stretch.angle_rad for stretch in bends.stretches) >= 0.0
+    both = bends_both_ways(bends) if face in ("inner", "outer") else None
+    return _about(face, thickness_mm, towards=towards) if both is None else both
+
+
+def mesh_layers(face: Face, bends: MeshBends, thickness_mm: float) -> Layers | Finding:
+    """Return where the sheet lies about a mesh, N its normals; or the finding that it has no inner and outer face."""
+    towards, away = bends.turned
+    if face in ("inner", "outer") and bends.towards and bends.away and min(towards, away) > LITTLE * (towards + away):
+        less = bends.towards if towards < away else bends.away
+        x, y, z = less.place
+        message = (
+            f"the mesh bends both ways, so it has no inner and outer face: most of it bends the other way than at "
+            f'({x:.6g}, {y:.6g}, {z:.6g}); face = "plus" or "minus" names the side of its normals'
+        )
+        return Finding("face-changes-side", message, True, {"x": x, "y": y, "z": z})
+    return _about(face, thickness_mm, towards=towards >= away)
+
+
+LITTLE = 0.02
+"""Share of the bending of a mesh that may go the other way: errors of its fitted curvatures do."""
+
+
+def _about(face: Face, thickness_mm: float, *, towards: bool) -> Layers:
+    """Return where the sheet lies; towards: whether the surface bends towards N."""
+    side = face if face not in ("inner", "outer") else "plus" if (face == "inner") == towards else "minus"
     low = {"middle": -0.5, "plus": -1.0, "minus": 0.0}[side] * thickness_mm
     return Layers(low, low + thickness_mm)
 

@@ -1,7 +1,9 @@
 """A surface as constructed, and the certificate without which nothing is unrolled."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
+
+import numpy as np
 
 from stages.geometry.arrays import ArrayValue, Numbers, Vector2
 from stages.geometry.mesh import Mesh
@@ -14,6 +16,11 @@ from stages.model.material import Part
 from stages.model.tolerances import Class
 
 Span = tuple[Fraction, Fraction]
+
+
+def no_pairs() -> Numbers:
+    """Return no pairs of vertices, shape (0, 2)."""
+    return np.zeros((0, 2), dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,6 +103,8 @@ class MeshSurface:
     seams: both sides of every cut that made it a disc, vertex by vertex and congruent, from one end to the other.
     size_mm: the diagonal of the bounding box.
     features: what is cut into it and drawn on it.
+    slits: both sides of every cut that lets it lie flatter, from the boundary to where the cut ends; sewn together.
+    kept: pairs of vertices, shape (k, 2): edges of which the pattern keeps the length.
     """
 
     part: Part
@@ -104,6 +113,8 @@ class MeshSurface:
     size_mm: float
     seams: tuple[tuple[Numbers, Numbers], ...] = ()
     features: tuple[Placed, ...] = ()
+    slits: tuple[tuple[Numbers, Numbers], ...] = ()
+    kept: Numbers = field(default_factory=no_pairs)
 
 
 Surface = RuledSurface | Plate | MeshSurface

@@ -25,9 +25,10 @@ from stages.unroll import outline
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.divide import division
 from stages.unroll.features import Features, on_strip
-from stages.unroll.forming import folded, formed
-from stages.unroll.limits import overlap, overlap_findings, strain_findings
+from stages.unroll.forming import folded, formed, with_pieces
+from stages.unroll.limits import area_findings, overlap, overlap_findings, strain_findings
 from stages.unroll.meshes import flatten_mesh
+from stages.unroll.onpart import on_part
 from stages.unroll.plates import flatten, rotations
 from stages.unroll.rolls import rolled
 from stages.unroll.sensitivity import sensitivity
@@ -35,7 +36,7 @@ from stages.unroll.sides import surface_figures
 from stages.unroll.strain import as_detail, strain_field
 from stages.unroll.tangencies import tangency_marks
 from stages.unroll.thickness import Neutral, neutral
-from stages.unroll.trimmed import Trimmed, box, on_the_part, trimmed, with_trim
+from stages.unroll.trimmed import Trimmed, box, trimmed, with_trim
 
 __all__ = ["unroll"]
 
@@ -101,6 +102,7 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     made = on_strip(surface, laid.development, outer, cut.inner if cut is not None else ())
     bends = [formed(sheet.bent, surface, laid.development, spec) for spec in surface.part.spec.bend]
     bends = bends or [folded(sheet.bent, surface, laid.development)]
+    lines = on_part([mark for bend in bends for mark in bend.marks], made.outer, made.inner)
     rolls = rolled(sheet.bent)
     strain = next(metric for metric in found.metrics if metric.name == "max_strain")
     measured = found.metrics if cut is None else with_trim(found.metrics, cut)
@@ -110,6 +112,7 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
         *division(surface),
         *sheet.findings,
         *strain_findings(strain, by_warp, tol),
+        *area_findings(outer),
         *overlap_findings(covered, DIVIDE if cut is None else DIVIDE_BEFORE),
         *made.findings,
         *(finding for bend in bends for finding in bend.findings),
@@ -117,16 +120,13 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     )
     corners = outline.corners(laid.development) if cut is None else box(outer)
     detail = {"class": _class(strain, by_warp)} | _figures(corners, made, found, cut) | laid.detail | sheet.detail
-    detail |= {"bends": [row for bend in bends for row in bend.rows], "rolls": list(rolls.rows)}
+    detail |= {"bends": [row for bend in bends for row in with_pieces(bend.rows, lines)], "rolls": list(rolls.rows)}
     detail |= {"given": _given(sheet, cut), "sensitivity": sensitivity(sheet.bent)}
     report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
-    marks = (*made.marks, *(mark for bend in bends for mark in bend.marks))
-    marks = (*marks, *tangency_marks(surface, laid.development))
-    if cut is not None:
-        marks = on_the_part(marks, made.outer, made.inner)
-    return Outcome(_pattern(surface, made, marks, corners, tol), report)
+    tangencies = on_part(tangency_marks(surface, laid.development), made.outer, made.inner)
+    return Outcome(_pattern(surface, made, (*made.marks, *lines, *tangencies), corners, tol), report)
 
 
 def _pattern(

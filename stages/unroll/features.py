@@ -7,7 +7,7 @@ evaluated through the map (`stages.geometry.mapped`); a circle of the flat patte
 the image of the curve in which the cylinder meets the surface (`stages.geometry.drill`).  Of a part that was divided,
 a blank takes what lies on it; what a cut would go through is refused.
 
-Marks do not reach beyond the outline: the arms of a cross end there.
+Marks do not reach beyond the outline nor across holes (`onpart`); a text that does is told (`texts`).
 """
 
 from collections.abc import Sequence
@@ -16,12 +16,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stages.geometry import contours
+from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Vector2, cross2, unit
 from stages.geometry.drill import drilled
 from stages.geometry.flatmap import Development
 from stages.geometry.mapped import FlatStrip, images
 from stages.geometry.plane import CircularArc, PlaneCurve, stretch
 from stages.geometry.strip import Strip
+from stages.geometry.tabled import tabled
 from stages.model.features import (
     CircleHole,
     CurveHole,
@@ -36,10 +38,12 @@ from stages.model.pattern import Contour, Mark, Text
 from stages.model.report import Finding, Metric
 from stages.model.surface import Placed, Plate, RuledSurface, Surface
 from stages.unroll import outline
-from stages.unroll.marks import clipped, ruling_marks, traced
+from stages.unroll.marks import ruling_marks, traced
 from stages.unroll.notches import Notch, Notched, notched
 from stages.unroll.notches import on_outline as notch_on_outline
 from stages.unroll.notches import on_strip as notch_on_strip
+from stages.unroll.onpart import left_off, on_part
+from stages.unroll.texts import text_findings
 from stages.unroll.webs import judged
 
 Row = dict[str, object]
@@ -180,7 +184,7 @@ def _image(one: Placed, flat: FlatStrip, strip: Strip) -> Flat | Finding:
         if hole is None:
             message = f"{one.name}: the drill leaves the surface before it has come round"
             return Finding("hole-outside", message, fatal=True, where={"feature": one.name})
-        return Flat(one, images(flat, (hole,)), point, unit(along)[0])
+        return Flat(one, images(flat, (tabled(hole, strip),)), point, unit(along)[0])
     return _circle_hole(Flat(one, (), point, unit(along)[0]))
 
 
@@ -215,7 +219,9 @@ def assembled(
         return Features(outer, findings=fatal)
     inner = (*holes, *(_hole(made, area, outer.chord_mm) for made, (area, *_) in cut))
     said = judged(outer, inner, surface.part.process)
-    marks = [mark for made in found for mark in _marks(made, outer)]
+    given = [mark for made in found for mark in _marks(made, outer.chord_mm)]
+    marks, rulings = on_part(given, outer, inner), on_part(lines, outer, inner)
+    texts = tuple(_text(made) for made in found if isinstance(made.placed.spec, TextMark))
     rows = [row for made in found if (row := _mark_row(made)) is not None]
     rows += [_row(name, point, None) for name, point in made_outer.places]
     hole_rows = [_hole_row(hole.name, contours.area_and_centroid(hole.edges), None) for hole in holes]
@@ -223,10 +229,10 @@ def assembled(
     return Features(
         outer,
         inner,
-        (*lines, *marks, *made_outer.slits),
-        tuple(_text(made) for made in found if isinstance(made.placed.spec, TextMark)),
+        (*rulings, *marks, *made_outer.slits),
+        texts,
         said.metrics,
-        (*fatal, *said.findings),
+        (*fatal, *said.findings, *left_off(given, marks), *text_findings(texts, outer, inner)),
         rows,
         hole_rows,
     )
@@ -249,15 +255,16 @@ def _hole(made: Flat, area: float, chord_mm: float) -> Contour:
     return outline.contour(edges, chord_mm, made.placed.name)
 
 
-def _marks(made: Flat, outer: Contour) -> list[Mark]:
-    """Return the lines of a mark."""
+def _marks(made: Flat, chord_mm: float) -> list[Mark]:
+    """Return the lines of a mark, whether on the part or not."""
     name, spec = made.placed.name, made.placed.spec
     if isinstance(spec, CurveMark):
-        return [Mark(name, traced(made.edges, outer.chord_mm))]
+        return [Mark(name, traced(made.edges, chord_mm))]
     if isinstance(spec, PointMark) and made.at is not None and made.along is not None:
         x, y = made.along
         arms = (float(spec.size) / 2.0 * np.array([x, y]), float(spec.size) / 2.0 * np.array([-y, x]))
-        return [Mark(name, path) for arm in arms for path in clipped(made.at - arm, made.at + arm, outer)]
+        ends = (np.stack([made.at - arm, made.at + arm]) for arm in arms)
+        return [Mark(name, ArcPath(line, np.zeros(2), closed=False)) for line in ends]
     return []
 
 

@@ -211,6 +211,13 @@ def _row(bent: Bent, line: BendLine, following: BendLine | None) -> dict[str, ob
     return row
 
 
+def with_pieces(rows: Sequence[dict[str, object]], marks: Sequence[Mark]) -> list[dict[str, object]]:
+    """Return the side table with the pieces of each line that lie on the part: its ends are those of the ruling."""
+    return [
+        row | {"pieces": [mark.path.vertices.tolist() for mark in marks if mark.name == row["name"]]} for row in rows
+    ]
+
+
 def _metrics(bent: Bent, lines: list[BendLine]) -> tuple[Metric, ...]:
     """Return the number of hits, what their angles lack of the surface's turning, pitch and facet error."""
     total = sum(abs(line.angle_rad) for line in lines)

@@ -1,5 +1,6 @@
-"""What refuses a pattern: strain beyond the class that the job accepts, and area that is covered twice."""
+"""What refuses a pattern: strain beyond the class that the job accepts, area that is covered twice, or none at all."""
 
+from stages.geometry import arcpath
 from stages.geometry.cover import doubled
 from stages.model.pattern import Contour
 from stages.model.report import Finding, Metric
@@ -37,6 +38,20 @@ def overlap(outer: Contour) -> Metric:
 
 FINER = 4.0, 16.0
 """How many times as fine the arcs are on which an overlap is looked at again."""
+
+
+def area_findings(outer: Contour) -> tuple[Finding, ...]:
+    """Refuse a pattern of which the lines and arcs that would be cut enclose nothing."""
+    path, chord = outer.path, outer.chord_mm
+    corners = len(arcpath.polygon(path, accuracy=chord))
+    if corners > len("ab") and arcpath.area(path) > NO_AREA * chord**2:
+        return ()
+    message = f"within the chord of {chord:g} mm the outline encloses nothing: the part is too thin or too small to cut"
+    return (Finding("no-area", message, fatal=True),)
+
+
+NO_AREA = 1e-6
+"""An area below this share of the square of the chord is none."""
 
 
 def overlap_findings(covered: Metric, remedy: str) -> tuple[Finding, ...]:

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from stages.geometry import biarc
-from stages.geometry.arcpath import ArcPath, polygon
-from stages.geometry.arrays import Vector2, norm
+from stages.geometry.arcpath import ArcPath
+from stages.geometry.arrays import norm
 from stages.geometry.flatmap import DevelopedRuling, Development
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.turning import turning, turning_places
 from stages.model.features import RulingMarks
-from stages.model.pattern import Contour, Mark
+from stages.model.pattern import Mark
 
 
 def ruling_marks(development: Development, spec: RulingMarks, *, chord_mm: float) -> tuple[Mark, ...]:
@@ -58,17 +58,3 @@ def traced(edges: Sequence[PlaneCurve], chord_mm: float) -> ArcPath:
     parts = [biarc.fit(edge, accuracy=chord_mm) for edge in edges]
     vertices = np.concatenate([*(part.vertices[:-1] for part in parts), parts[-1].vertices[-1:]])
     return ArcPath(vertices, np.append(np.concatenate([part.bulges[:-1] for part in parts]), 0.0), closed=False)
-
-
-def clipped(start: Vector2, end: Vector2, outer: Contour) -> list[ArcPath]:
-    """Return what of a line lies on the part, as far as that is longer than nothing."""
-    import shapely
-
-    region = shapely.Polygon(polygon(outer.path, accuracy=min(outer.chord_mm, CLIP_MM)))
-    left = shapely.LineString([start, end]).intersection(region)
-    lines = [np.asarray(line.coords) for line in getattr(left, "geoms", [left]) if line.length > biarc.ZERO_LENGTH_MM]
-    return [ArcPath(line[[0, -1]], np.zeros(2), closed=False) for line in lines]
-
-
-CLIP_MM = 0.01
-"""How near the outline the arm of a cross ends."""

@@ -2,8 +2,8 @@
 
 At stations of equal turning: how far the sheet has been fed (across the rulings, at their middles), the inside radius
 at both ends of the ruling, and the tilt of the roll.  Along a ruling the radius is linear; the cone that touches there
-has the half-angle atan((rho1 - rho0) / |p|), which is the angle between ruling and roll axis.  At an apex the inside radius is
-0: no tool leaves that, so the row has no tool radius at that end, and says so.
+has the half-angle atan((rho1 - rho0) / |p|), which is the angle between ruling and roll axis.  At an apex the inside
+radius is 0: no tool leaves that, so the row has no tool radius at that end, and says so.
 
 Springback of an elastic, perfectly plastic sheet [1]_: bent to the radius R of its middle, it springs back to R_f,
 

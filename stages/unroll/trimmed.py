@@ -5,8 +5,7 @@
 A loop is given by curves of u and v (`model.surface.Trim`).  Its flat image is evaluated through the exact map; lengths
 and area of the flat loops are integrals along numerical derivatives of the flat positions, those of the surface come
 from its tangents alone: the length of S_u u' + S_v v', and the area, by Green's theorem in the plane of u and v, as the
-integral of A dv round the loop with dA/du = |S_u x S_v|.  The two sides share no number.  Rulings that are marked or
-bent along end at the outline and at the holes.
+integral of A dv round the loop with dA/du = |S_u x S_v|.  The two sides share no number.
 
 Not for a loop that goes round a seam: cut it there first.
 """
@@ -18,16 +17,15 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from stages.geometry import quadrature
-from stages.geometry.arcpath import ArcPath, bounds, polygon
+from stages.geometry.arcpath import bounds
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector2, cross2, norm
-from stages.geometry.biarc import ZERO_LENGTH_MM
 from stages.geometry.differentiation import matrix
 from stages.geometry.flatmap import Development
 from stages.geometry.mapped import LEAST_STRETCH, FlatStrip, MappedEdge, backwards, images
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.quadrature import NODES, WEIGHTS
 from stages.geometry.strip import Strip, jet
-from stages.model.pattern import Contour, Mark
+from stages.model.pattern import Contour
 from stages.model.report import Metric
 from stages.model.surface import RuledSurface, Trim
 from stages.unroll import outline
@@ -188,29 +186,3 @@ def box(outer: Contour) -> Points2:
     """Return the corners of the box round a contour, counter-clockwise from the least, mm."""
     low_x, low_y, high_x, high_y = bounds(outer.path)
     return np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
-
-
-def on_the_part(marks: Sequence[Mark], outer: Contour, inner: Sequence[Contour]) -> tuple[Mark, ...]:
-    """Return the marks along rulings, each as far as it lies on the part; those that are not lines as they are."""
-    import shapely
-
-    accuracy = outer.chord_mm
-    rings = [polygon(contour.path, accuracy=accuracy) for contour in (outer, *inner)]
-    region = shapely.make_valid(shapely.Polygon(rings[0], rings[1:]))
-    return tuple(Mark(mark.name, path, mark.layer) for mark in marks for path in _inside(mark.path, region))
-
-
-def _inside(path: ArcPath, region: object) -> list[ArcPath]:
-    """Return what of a straight line lies in a region of shapely's, as far as that is longer than nothing."""
-    import shapely
-
-    if len(path.vertices) > len(ENDS) or path.bulges.any():
-        return [path]
-    left = shapely.intersection(shapely.LineString(path.vertices), region)
-    lines: list[Points2] = [
-        np.asarray(line.coords)[[0, -1]] for line in getattr(left, "geoms", [left]) if line.length > ZERO_LENGTH_MM
-    ]
-    return [ArcPath(line, np.zeros(2), closed=False) for line in lines]
-
-
-ENDS = (0, 1)

@@ -63,7 +63,8 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
 def _mesh(surface: MeshSurface, tol: Tolerances) -> Outcome[Certificate | None]:
     """Return the certificate of a mesh that was not recognised: judged by the map that it will be cut by."""
     judged = verdict(surface, tol)
-    report = StageReport("verify", surface.part.name, judged.metrics, judged.findings, {"class": judged.reached})
+    detail: dict[str, object] = {"class": judged.reached, "regions": list(judged.regions)}
+    report = StageReport("verify", surface.part.name, judged.metrics, judged.findings, detail)
     if judged.reached == "rejected" or judged.reached == "inconclusive" or not report.passed:  # noqa: PLR1714
         return Outcome(None, report)
     return Outcome(Certificate(surface, judged.reached, proved=False, flat=judged.flat), report)

@@ -20,6 +20,9 @@ from stages.model.sheetface import Layers, layers
 from stages.model.surface import RuledSurface
 from stages.verify import sampled
 
+KNOWN_DIGITS = 13
+"""Of a radius, which is measured to some 1e-13 of itself: one that is a material's limit may not fail by rounding."""
+
 STRAIGHT = 1e-9
 """A curvature below this share of 1/D bends the part by less than a nanometre per metre: flat."""
 
@@ -36,6 +39,12 @@ class Sharpest:
     inside_mm: float
     where: Where
 
+    @classmethod
+    def at(cls, given_mm: float, middle_mm: float, inside_mm: float, where: Where) -> "Sharpest":
+        """Return a bend by its radii, of which those digits are kept that are known."""
+        given, middle, inside = (float(f"{radius:.{KNOWN_DIGITS}g}") for radius in (given_mm, middle_mm, inside_mm))
+        return cls(given, middle, inside, where)
+
 
 def bending(surface: RuledSurface) -> tuple[tuple[Metric, Metric], list[Finding]]:
     """Return the smallest inside radius in mm, the largest strain of the outer fibre, and what the material says.
@@ -44,27 +53,37 @@ def bending(surface: RuledSurface) -> tuple[tuple[Metric, Metric], list[Finding]
     """
     flat, proved = is_planar(surface.patches)
     if flat:
-        return _nowhere("proved" if proved else "sampled"), []
+        return nowhere("proved" if proved else "sampled"), []
     try:
         bends = turning(surface.patches)
     except NoSolutionError:  # a fold inside, or a normal that vanishes: refused elsewhere, its curvature still counts
         bends = None
     found = sharpest(surface, bends)
     if not isinstance(found, Sharpest):
-        return _nowhere("sampled"), [found] if isinstance(found, Finding) else []
+        return nowhere("sampled"), [found] if isinstance(found, Finding) else []
     material = surface.part.material
     points = frozenset() if bends is None else apexes(bends)
     judged = sharpest(surface, bends, points) if points and found.given_mm == 0.0 else found
     # at an apex no strain is defined: that of the other edges counts
     bend = judged if isinstance(judged, Sharpest) else None
+    metrics = _metrics(found, bend, material)
+    checked = [] if bend is None else _judged(bend, material)
+    return metrics, [*checked, *_apex_findings(found, judged), *_unchecked(material)]
+
+
+def judged_bend(found: Sharpest, material: Material) -> tuple[tuple[Metric, Metric], list[Finding]]:
+    """Return smallest inside radius and largest strain of the sharpest bend, and what the material says of it."""
+    return _metrics(found, found, material), [*_judged(found, material), *_unchecked(material)]
+
+
+def _metrics(found: Sharpest, bend: Sharpest | None, material: Material) -> tuple[Metric, Metric]:
+    """Return the inside radius of the sharpest bend, and the strain of that which is judged (None: no strain)."""
     strain = None if bend is None or material.thickness_mm is None else _strain(material.thickness_mm, bend.middle_mm)
     shown = strain if strain is not None and strain < float("inf") else None
-    metrics = (
+    return (
         Metric("min_bend_radius_mm", max(found.inside_mm, 0.0), "mm", "sampled", None, found.where),
         Metric("outer_fibre_strain", shown, "", "sampled", material.max_strain, None if bend is None else bend.where),
     )
-    checked = [] if bend is None else _judged(bend, material)
-    return metrics, [*checked, *_apex_findings(found, judged), *_unchecked(material)]
 
 
 def _judged(bend: Sharpest, material: Material) -> list[Finding]:
@@ -85,7 +104,7 @@ def _apex_findings(found: Sharpest, judged: Sharpest | Finding | None) -> list[F
     return [Finding("sharp-apex", message, False, found.where)]
 
 
-def _nowhere(evidence: Evidence) -> tuple[Metric, Metric]:
+def nowhere(evidence: Evidence) -> tuple[Metric, Metric]:
     """Return the metrics of a part that is bent nowhere, or that has no face such as the job names."""
     return Metric("min_bend_radius_mm", None, "mm", evidence), Metric("outer_fibre_strain", None, "", evidence)
 
@@ -118,7 +137,7 @@ def _bends(tight: Tight, size_mm: float) -> bool:
 def _radii(surface: RuledSurface, sign: float, tight: Tight, sheet: Layers) -> Sharpest:
     radius = 1.0 / tight.curvature
     where: Where = {"v": surface.v_of(tight.piece, tight.v), "u": tight.u}
-    return Sharpest(radius, radius - sign * sheet.middle_mm, radius - sign * sheet.inside_mm(sign), where)
+    return Sharpest.at(radius, radius - sign * sheet.middle_mm, radius - sign * sheet.inside_mm(sign), where)
 
 
 def _unsigned(surface: RuledSurface, thickness: float) -> Sharpest | None:
@@ -128,7 +147,7 @@ def _unsigned(surface: RuledSurface, thickness: float) -> Sharpest | None:
     if worst.value * surface.size_mm <= STRAIGHT:
         return None
     radius = 1.0 / worst.value
-    return Sharpest(radius, radius, radius - thickness / 2.0, worst.where)
+    return Sharpest.at(radius, radius, radius - thickness / 2.0, worst.where)
 
 
 def _strain(thickness: float, middle_mm: float) -> float:

@@ -15,15 +15,16 @@ says what it permits. A mesh is never `exact`.  What is smaller than a region, a
 alone.
 """
 
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from stages.geometry.meshfit import fitted, stars
-from stages.geometry.meshflat import MeshMap, at_rest, edge_lengths, noise
-from stages.geometry.meshtopology import edges_of
+from stages.errors import NoSolutionError
+from stages.geometry.meshflat import MeshMap
 from stages.model.report import Finding, Metric, Where
-from stages.model.surface import MeshSurface
+from stages.model.surface import MeshSurface, no_pairs
 from stages.model.tolerances import (
     CLASSES,
     STRAIN_LIMIT,
@@ -33,24 +34,42 @@ from stages.model.tolerances import (
     class_by_strain,
     class_by_warp,
 )
-from stages.verify.meshbounds import Bound, Studied, defect_sum, strain, strain_rms, warp
+from stages.verify.meshbending import mesh_bending
+from stages.verify.meshbounds import (
+    Bound,
+    Curvatures,
+    Studied,
+    closer,
+    curvatures,
+    defect_sum,
+    strain,
+    strain_rms,
+    warp,
+)
+from stages.verify.meshcuts import suggested
+from stages.verify.meshstudy import study
 
 DEG = 180.0 / np.pi
-AT_REST = 1e-10
-"""The last step of the flattening, relative to the size of the part."""
 BEST: Class = "fabrication"
 """The best class of a mesh: its vertices say nothing of what lies between them."""
+
+STRETCHED: Class = "leather"
+"""What is stretched into its shape is judged by strain alone: cuts take the strain away and leave the warp."""
 
 Reached = Class | Literal["rejected", "inconclusive"]
 
 
 class Verdict(NamedTuple):
-    """What a mesh is: the numbers, what is wrong, the class, and the flat map that this rests on."""
+    """What a mesh is: the numbers, what is wrong, the class, the flat map that this rests on.
+
+    regions: where the curvature was averaged, with what it adds up to there.
+    """
 
     metrics: tuple[Metric, ...]
     findings: tuple[Finding, ...]
     reached: Reached
     flat: MeshMap
+    regions: tuple[dict[str, object], ...] = ()
 
 
 def verdict(surface: MeshSurface, tol: Tolerances) -> Verdict:
@@ -58,32 +77,71 @@ def verdict(surface: MeshSurface, tol: Tolerances) -> Verdict:
 
     Raises NoSolutionError if it could not be flattened to rest.
     """
-    studied = _studied(surface)
-    bent, strained = warp(studied), strain(studied)
+    try:
+        studied = study(surface)
+    except NoSolutionError as error:
+        if not (len(surface.kept) or surface.slits):
+            raise
+        return _impossible(surface, error)
+    strained = strain(studied)
+    read = _read(studied, strained, tol)
+    judged = _judged(surface, studied, warp(read), strained, tol)
+    bends, bent = mesh_bending(surface, studied)
+    metrics, findings = (*judged.metrics, *bends), (*judged.findings, *bent)
+    return judged._replace(metrics=metrics, findings=findings, regions=tuple(_regions(surface, read)))
+
+
+def _read(studied: Studied, strained: Bound, tol: Tolerances) -> Curvatures:
+    """Return the curvatures, by closer fits where the first leave a doubt that decides and these leave less."""
+    first = curvatures(studied)
+    bent = warp(first)
+    ends = {tol.accepts(_class(end, strained.value) or "") for end in (bent.least, bent.largest)}
+    if len(ends) == 1 or not len(first.centres):
+        return first
+    second = curvatures(closer(studied))
+    return second if second.doubt.max() < first.doubt.max() else first
+
+
+def _regions(surface: MeshSurface, read: Curvatures) -> Iterator[dict[str, object]]:
+    """Yield where the curvature was averaged, and its integral there, from which the warp follows."""
+    areas = np.pi * read.radii**2
+    warps = read.rulings * np.sqrt(np.abs(read.mean)) * DEG
+    for centre, radius, total, doubt, bent in zip(
+        read.centres, read.radii, areas * read.mean, areas * read.doubt, warps, strict=True
+    ):
+        x, y, z = (float(value) for value in surface.mesh.vertices[centre])
+        yield {
+            "vertex": int(centre), "x": x, "y": y, "z": z, "radius_mm": float(radius),
+            "defect_rad": _known(float(total)), "defect_doubt_rad": _known(float(doubt)),
+            "warp_deg": _known(float(bent)),
+        }  # fmt: skip
+
+
+def _judged(surface: MeshSurface, studied: Studied, bent: Bound, strained: Bound, tol: Tolerances) -> Verdict:
     best, likely, worst = (_class(getattr(bent, at), getattr(strained, at)) for at in ("least", "value", "largest"))
     metrics = _metrics(surface, studied, bent, strained, tol)
     if worst is not None and tol.accepts(worst):
         return Verdict(metrics, (), likely or worst, studied.flat)
+    cuts = suggested(surface, studied) if tol.accept == STRETCHED else ()
     if best is None or not tol.accepts(best):
-        return Verdict(metrics, (_rejection(surface, bent, strained, tol),), "rejected", studied.flat)
-    return Verdict(metrics, (_doubt(surface, studied, bent, strained, tol),), "inconclusive", studied.flat)
+        return Verdict(metrics, (_rejection(surface, bent, strained, tol), *cuts), "rejected", studied.flat)
+    return Verdict(metrics, (_doubt(surface, studied, bent, strained, tol), *cuts), "inconclusive", studied.flat)
 
 
-def _studied(surface: MeshSurface) -> Studied:
-    """Return the mesh fitted and flattened."""
-    mesh, edges = surface.mesh, edges_of(surface.mesh)
-    around = stars(mesh, edges)
-    fit = fitted(mesh, around)
-    lengths, kind = edge_lengths(mesh, edges, fit)
-    still = AT_REST * surface.size_mm
-    return Studied(
-        mesh, edges, around, fit, at_rest(mesh, edges, lengths, kind=kind, noise_mm=noise(fit), accuracy=still)
+def _impossible(surface: MeshSurface, error: NoSolutionError) -> Verdict:
+    """Return why a mesh has no flat map with the lengths that were asked for, and its map without them."""
+    loose = study(replace(surface, kept=no_pairs(), slits=()))
+    message = (
+        f"no flat pattern keeps the lengths that are asked for ({error}); without them the strain is "
+        f"{float(np.abs(loose.flat.strains).max()):.3g} at most: keep shorter lines, or cut along lines that you keep"
     )
+    return Verdict((), (Finding("keep-impossible", message, True),), "rejected", loose.flat)
 
 
 def _class(warp_rad: float, strained: float) -> Class | None:
     """Return the best class that keeps both limits, None if none does."""
-    reached = class_by_warp(warp_rad * DEG), class_by_strain(strained)
+    bent = class_by_warp(warp_rad * DEG) or STRETCHED
+    reached = bent, class_by_strain(strained)
     if None in reached:
         return None
     return max(BEST, *(name for name in reached if name), key=CLASSES.index)
@@ -93,7 +151,7 @@ def _metrics(
     surface: MeshSurface, studied: Studied, bent: Bound, strained: Bound, tol: Tolerances
 ) -> tuple[Metric, ...]:
     flat = studied.flat
-    limit = WARP_LIMIT_DEG[tol.accept], STRAIN_LIMIT[tol.accept]
+    limit = None if tol.accept == STRETCHED else WARP_LIMIT_DEG[tol.accept], STRAIN_LIMIT[tol.accept]
     return (
         Metric("equivalent_warp_deg", _known(bent.value * DEG), "deg", "sampled", limit[0], _where(surface, bent)),
         Metric("equivalent_warp_least_deg", bent.least * DEG, "deg"),
@@ -126,15 +184,28 @@ def _rejection(surface: MeshSurface, bent: Bound, strained: Bound, tol: Toleranc
     if tol.accept == "exact":
         message = "a mesh is never 'exact': accept = 'fabrication' takes one that is developable as far as it can tell"
         return Finding("not-developable", message, True)
-    by_warp = not tol.accepts(class_by_warp(bent.least * DEG) or "")
+    by_warp = not tol.accepts(class_by_warp(bent.least * DEG) or STRETCHED)
     size = (
         f"equivalent warp {bent.value * DEG:.4g} deg, at least {bent.least * DEG:.4g} deg, "
         f"allowed {WARP_LIMIT_DEG[tol.accept]:g} deg"
         if by_warp
         else f"strain {strained.value:.4g}, at least {strained.least:.4g}, allowed {STRAIN_LIMIT[tol.accept]:g}"
     )
-    message = f"not developable enough: {size} (accept = {tol.accept!r}); it reaches {reached or 'no class'!r}"
+    message = (
+        f"not developable enough: {size} (accept = {tol.accept!r}); it reaches {reached or 'no class'!r}"
+        + _remedy(strained, tol)
+    )
     return Finding("not-developable", message, True, _where(surface, bent if by_warp else strained))
+
+
+def _remedy(strained: Bound, tol: Tolerances) -> str:
+    """Return what would do where sheet metal is asked for: a material that stretches, and with or without cuts."""
+    if tol.accept == STRETCHED:
+        return ""
+    limit = STRAIN_LIMIT[STRETCHED]
+    if strained.value <= limit:
+        return f"; accept = {STRETCHED!r} takes it, strained by {strained.value:.3g} of {limit:g}"
+    return f"; even accept = {STRETCHED!r} takes a strain of {limit:g} only: it needs `cuts`, which that finds"
 
 
 def _doubt(surface: MeshSurface, studied: Studied, bent: Bound, strained: Bound, tol: Tolerances) -> Finding:

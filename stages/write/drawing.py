@@ -13,7 +13,7 @@ from stages.geometry.arcpath import ArcPath, area, bounds, distances, piece_coun
 from stages.geometry.arrays import ArrayValue, Vector2
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
-from stages.model.pattern import FlatPattern, Text
+from stages.model.pattern import LETTER_WIDTH, FlatPattern, Text
 from stages.model.sheet import SheetLayout
 
 LABEL_MOST_MM = 10.0
@@ -22,9 +22,6 @@ LABEL_LEAST_MM = 0.1
 
 LABEL_FILL = 0.9
 """Share of the room around the label's place that its box may take."""
-
-LETTER_WIDTH = 1.0
-"""Width of a letter in heights: the widest letters of the fonts that readers put in for STANDARD."""
 
 FULL_TURN = 360.0
 QUARTER_BULGE = 0.41421356237309503

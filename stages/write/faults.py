@@ -45,7 +45,8 @@ WHOLE = 0.999
 def faults(file: ReadFile, path: str, shortest_mm: float, chord_mm: float) -> list[Finding]:
     """Return the faults of one file.
 
-    shortest_mm: the length below which a piece is too short.  chord_mm: how far its paths may be off their exact curves.
+    shortest_mm: the length below which a piece is too short.
+    chord_mm: how far its paths may be off their exact curves.
     """
     found: list[Finding] = [_fatal("readback-complaint", path, text) for text in file.complaints]
     if not file.entities:

@@ -115,3 +115,18 @@ def test_tables_and_code_have_digests_that_follow_their_text(monkeypatch: pytest
     monkeypatch.setattr(provenance, "_digest", changed)
     assert code_digest() != before
     code_digest.cache_clear()
+
+
+def test_the_libraries_that_read_the_files_of_a_job_are_told_with_their_versions() -> None:
+    always = provenance.environment(["job.toml", "rails.dxf", "hood.stl"])
+    assert set(always) == {"python", *provenance.LIBRARIES}
+    assert set(provenance.environment(["job.toml", "a/Bracket.STP"])) - set(always) == {"cadquery-ocp-novtk"}
+    both = provenance.environment(["one.igs", "two.3dm"])
+    assert set(both) - set(always) == {"cadquery-ocp-novtk", "rhino3dm"}
+    assert "not installed" not in both.values()
+
+
+def test_every_cad_file_that_is_read_has_its_library_told() -> None:
+    from pipeline.cadfiles import SORTS
+
+    assert {end for ends in provenance.CAD_LIBRARIES.values() for end in ends} == set(SORTS)

@@ -16,6 +16,7 @@ from pipeline.jobfile import read
 from pipeline.outputs import outputs
 from pipeline.report.document import encoded, plain
 from pipeline.run import run_job
+from tests.meshes import cylinder
 from tests.pipeline.jobs import CONE, PLATE, STOCK, TWISTED, write_job
 
 STEEL = '[material]\nname = "mild steel"\nthickness = 2\n'
@@ -23,6 +24,11 @@ STEEL = '[material]\nname = "mild steel"\nthickness = 2\n'
 
 def made(folder: Path, text: str) -> tuple[dict[str, object], dict[str, bytes]]:
     """Return the report as JSON reads it, and all files."""
+    if "fine.ply" in text:
+        import trimesh
+
+        mesh = cylinder(0, 80, 24).mesh
+        trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(folder / "fine.ply")
     _, produced = outputs(run_job(job_of(read(write_job(folder, text)))))
     return json.loads(produced["report.json"]), produced
 
@@ -35,11 +41,29 @@ def entry(report: dict[str, object], *path: str | int) -> object:
     return value
 
 
+NO_PICTURES = 'schema = 1\n[report]\nformats = ["json"]\n[[part]]\nname = "part"\n[part.surface]\n'
+MESH = NO_PICTURES + 'kind = "mesh"\nfile = "sample:frustum.stl"\n'
+FACE = NO_PICTURES + 'kind = "face"\nfile = "sample:channel.step"\nall = true\n'
+BENDS = "[[part.bend]]\nmax_angle = 30\n"
+SLIGHTLY_TWISTED = """\
+[[part]]
+name = "slightly twisted"
+[part.surface]
+kind = "ruled"
+c0 = { line = [[0, 0, 0], [100, 0, 0]] }
+c1 = { line = [[0, 0, 50], [100, 0.02, 50]] }
+"""
+
 JOBS = {
     "nested": PLATE + STOCK + STEEL + CONE,
     "flat only": PLATE,
     "rejected": PLATE + STOCK + TWISTED,
     "too large": PLATE + STOCK.replace("100", "10"),
+    "mesh": MESH,
+    "mesh as it is": MESH.replace("sample:frustum.stl", "fine.ply") + "recognise = false\n",
+    "face": FACE,
+    "bent and rolled": PLATE + STEEL + CONE + BENDS,
+    "by least strain": PLATE + SLIGHTLY_TWISTED,
 }
 
 
@@ -49,6 +73,29 @@ def test_a_report_keeps_its_schema(tmp_path: Path, name: str) -> None:
     report, _ = made(tmp_path, JOBS[name])
     jsonschema.Draft202012Validator(schema).validate(report)
     assert list(report) == schema["required"]
+
+
+@pytest.mark.parametrize(
+    ("name", "stage", "told"),
+    [
+        ("mesh", 0, {"loops", "recognised"}),
+        ("mesh as it is", 2, {"flattened_on"}),
+        ("face", 0, {"faces"}),
+        ("bent and rolled", 2, {"bends", "rolls", "given"}),
+        ("by least strain", 2, {"strain_field"}),
+    ],
+)
+def test_what_the_schema_describes_is_what_the_stages_say(
+    tmp_path: Path, name: str, stage: int, told: set[str]
+) -> None:
+    schema = json.loads(files("pipeline").joinpath("data", "report-schema.json").read_text("utf-8"))
+    report, _ = made(tmp_path, JOBS[name])
+    detail = entry(report, "parts", -1, "stages", stage, "detail")
+    assert isinstance(detail, dict)
+    assert told <= set(detail)
+    assert told <= set(schema["$defs"]["detail"]["properties"])
+    edges = entry(report, "parts", -1, "flat", "edges")
+    assert (edges is None) == (name in ("mesh as it is", "face"))
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from stages.geometry.mapped import FlatStrip, MappedEdge, images
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from tests import oracles
 from tests.near import assert_near
-from tests.parts import AUMANN_CUBIC, QUINTIC_TANGENT, Table, patches
+from tests.parts import AUMANN_CUBIC, OBLIQUE_CONE, QUINTIC_TANGENT, Table, patches
 from tests.stages.geometry.test_drill import HALF_TUBE
 
 DIAGONAL = Segment(np.array([0.1, 0.2]), np.array([0.9, 0.7]))
@@ -57,3 +57,20 @@ def test_a_stretch_run_backwards_has_the_same_points() -> None:
     t = np.linspace(0.0, 1.0, 33)
     assert_near(back.at(t), there.at(1.0 - t), bound=1e-12, why="one rounding of t")
     assert_near(back.derivative(t), -there.derivative(1.0 - t), bound=1e-9, why="one rounding of t, and its slope")
+
+
+def test_the_image_of_a_spline_is_integrated_between_its_knots() -> None:
+    """A rough spline: over grids that do not know its knots the two rules differ by more than is asked for."""
+    from stages.geometry.planespline import spline
+    from stages.geometry.sampling import length_and_area, resolved
+
+    made = patches(OBLIQUE_CONE)
+    flat = FlatStrip(develop(made).pieces, np.arange(len(made) + 1.0))
+    angle = np.linspace(0.0, 2.0 * np.pi, 81)
+    radius = 0.3 + 0.01 * np.random.default_rng(0).standard_normal(81)
+    ring = 0.5 + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    ring[-1] = ring[0]
+    edges = images(flat, (spline(ring, periodic=True),))
+    assert edges[0].breaks.size == angle.size
+    length, _ = length_and_area([resolved(edge, accuracy=1e-3) for edge in edges], accuracy=1e-10)
+    assert length > 0.0

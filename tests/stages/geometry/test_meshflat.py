@@ -27,18 +27,28 @@ def on_chords(known: Known, mesh: Mesh) -> MeshMap:
     return at_rest(mesh, edges, lengths, kind="chord", noise_mm=0.0, accuracy=REST * known.size)
 
 
-GOALS = {"cylinder": 1e-9, "right cone": 1e-7, "oblique cone": 5e-6, "round cone": 5e-6, "tangent surface": 1e-7}
+SMALL = 60, 16
+"""Columns and rows: 1920 triangles.  Ten seeds of 10 000 are in the benches."""
+COARSER = (158.0 / 60.0) ** 6
+"""Fits of degree 4 leave slopes that are off by h^5 at both ends of an edge of length h: lengths by its sixth power."""
+BETTER = 10.0
+"""Than chords, at least; on the sharpest of these it is 17 times."""
+GOALS = {
+    "cylinder": 1e-9, "right cone": 1e-7, "oblique cone": 5e-6, "round cone": 5e-6, "tangent surface": 1e-7,
+    "strap": 1e-7,
+}  # fmt: skip
 """Position error over size at 10 000 irregular triangles."""
 
 
 @pytest.mark.parametrize("name", GOALS)
 def test_a_developable_unrolls_to_its_exact_positions(name: str) -> None:
-    known = KNOWN[name](7)
-    made = flat(known)
+    known = KNOWN[name](7, *SMALL)
+    made, plain = flat(known), on_chords(known, known.mesh)
     error = misplaced(made.positions, known.flat) / known.size
     assert made.kind == "curved"
     assert made.reached_mm <= REST * known.size
-    assert error <= GOALS[name]
+    assert error <= GOALS[name] * COARSER
+    assert error <= misplaced(plain.positions, known.flat) / known.size / BETTER
     rounded = flat(known, single_precision(known.mesh))
     assert misplaced(rounded.positions, known.flat) / known.size <= max(1e-7, 2.0 * error)
 

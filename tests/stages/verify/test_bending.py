@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from stages.construct import construct
 from stages.model.face import Face
 from stages.model.material import Material
+from stages.model.tolerances import Tolerances
+from stages.verify import verify
 from tests.near import assert_near, assert_relative
-from tests.parts import CIRCLE, EXAMPLE_1, EXAMPLE_2_CYLINDER, RIGHT_FRUSTUM, Passage, Table, passage
+from tests.parts import CIRCLE, EXAMPLE_1, EXAMPLE_2_CYLINDER, RIGHT_FRUSTUM, Passage, Table, part, passage
 
 PIPE: Table = {"kind": "cylinder", "directrix": CIRCLE, "direction": [0, 0, 1], "length": 5}
 
@@ -88,3 +91,19 @@ def test_without_a_thickness_there_is_no_strain() -> None:
     made = verified(PIPE, "middle", Material())
     assert made.value("verify", "outer_fibre_strain") is None
     assert_near(made.value("verify", "min_bend_radius_mm"), 2.0, bound=1e-14, why="closed form")
+
+
+def test_a_radius_that_is_the_materials_limit_passes() -> None:
+    """A quarter bend of inside radius 3, off the origin so that rounding has its way; the next smaller one fails."""
+    limits = Material(thickness_mm=2.0, bend_radius_min_mm=3.0, max_strain=0.25)
+    for radius, fine in (("3", True), ("2.999999", False)):
+        table = {
+            "kind": "cylinder",
+            "directrix": {
+                "arc": {"center": [17.3, -41.7, 5.1], "radius": radius, "normal": [0, 1, 0], "start": 13, "end": 103}
+            },
+            "direction": [0, 1, 0],
+            "length": 40,
+        }
+        found = verify(construct(part(table, limits, face="inner"), Tolerances()).product, Tolerances())
+        assert found.report.passed is fine, (radius, found.report.findings)

@@ -8,15 +8,31 @@ from stages.geometry.meshcurvature import defects
 from stages.geometry.meshflat import flattened
 from stages.geometry.meshlengths import chords
 from stages.geometry.meshtopology import edges_of
+from stages.model.material import Material
 from stages.model.surface import MeshSurface
 from stages.model.tolerances import Tolerances
-from stages.verify.meshbounds import cells
+from stages.verify.meshbounds import cells, closer, curvatures, warp
 from stages.verify.meshes import Verdict, verdict
-from tests.meshes import KNOWN, OBLIQUE_CONE, cylinder, hemisphere, noisy, single_precision, square_saddle, warped
+from stages.verify.meshstudy import study
+from tests.meshes import (
+    KNOWN,
+    OBLIQUE_CONE,
+    cylinder,
+    hemisphere,
+    in_a_quarter,
+    jittered,
+    noisy,
+    single_precision,
+    square_saddle,
+    twisted,
+    warped,
+)
 from tests.near import assert_relative
 from tests.parts import EXAMPLE_1, part
 
-PART = part(EXAMPLE_1)
+FOIL = Material(thickness_mm=1e-6, bend_radius_min_mm=0.0, max_strain=1.0)
+"""It may be bent as sharply as it likes, so that nothing but the mesh is judged."""
+PART = part(EXAMPLE_1, FOIL)
 
 
 def judged(mesh: Mesh, accept: str = "fabrication") -> Verdict:
@@ -59,6 +75,72 @@ def test_half_a_degree_of_warp_on_an_oblique_cone_is_seen() -> None:
     assert value(made, "equivalent_warp_least_deg") > 0.1
 
 
+@pytest.mark.parametrize("name", ["cylinder", "strap"])
+def test_half_a_degree_of_warp_throughout_is_seen(name: str) -> None:
+    made = judged(twisted(name, 0.5, 4))
+    assert made.reached == "rejected"
+    assert value(made, "equivalent_warp_least_deg") > 0.4
+
+
+def test_the_warp_of_a_twisted_cylinder_is_read_in_degrees() -> None:
+    """Its normal turns by the same angle along all rulings, all of one length: K is that of every ruling."""
+    made = judged(twisted("cylinder", 0.5, 1))
+    assert_relative(value(made, "equivalent_warp_deg"), 0.5, bound=0.01,
+                    why="the twist turns rulings by 0.5 deg against the axis; fits see 0.1 %")  # fmt: skip
+
+
+def test_half_a_degree_of_warp_in_a_quarter_alone_is_seen_there() -> None:
+    mesh = twisted("strap", 0.5, 3, in_a_quarter)
+    made = judged(mesh)
+    assert made.reached == "rejected"
+    (finding,) = made.findings
+    assert finding.where is not None
+    v = jittered(3)[0][int(finding.where["vertex"])]
+    assert 0.25 < v < 0.5
+
+
+def test_warp_is_at_least_at_most_and_in_between() -> None:
+    for mesh in (cylinder(1, 60, 16).mesh, twisted("right cone", 0.5, 2, in_a_quarter), noisy(cylinder(1).mesh, 1e-5)):
+        made = judged(mesh)
+        least, likely, most = (value(made, f"equivalent_warp_{which}deg") for which in ("least_", "", "largest_"))
+        assert least <= likely <= most
+
+
+def test_closer_fits_settle_a_doubt_of_coarse_ones() -> None:
+    mesh = KNOWN["oblique cone"](1, 100, 24).mesh
+    studied = study(MeshSurface(PART, mesh, (), 1.0))
+    first, second = (np.degrees(warp(curvatures(one)).largest) for one in (studied, closer(studied)))
+    assert first > 0.1, "the case is one of doubt"
+    assert second < first / 3.0
+    made = judged(mesh)
+    assert made.reached == "fabrication"
+    assert_relative(value(made, "equivalent_warp_largest_deg"), second, bound=1e-9, why="the same, but for scale")
+
+
+def test_what_regions_hold_is_told_one_by_one() -> None:
+    made = judged(square_saddle(2.0, 3))
+    assert len(made.regions) > 5
+    for region in made.regions:
+        x, y, radius = (float(str(region[name])) for name in ("x", "y", "radius_mm"))
+        assert max(abs(x), abs(y)) + radius < 1.05, "circles within the square of half side 1"
+        assert_relative(float(str(region["defect_rad"])), -np.pi * (radius * np.tan(np.radians(1.0))) ** 2, bound=0.01,
+                        why="z = x y tan(w / 2): K is the square of that, less 2 w^2; 1e-3 of fits")  # fmt: skip
+        assert 0.0 < float(str(region["defect_doubt_rad"])) < 1e-5
+
+
+def test_a_dent_is_in_one_region_and_in_no_other() -> None:
+    """The planted fault: a developable, and one bump in its middle."""
+    known = cylinder(6)
+    assert judged(known.mesh).reached == "fabrication"
+    far = np.hypot(*(known.flat - known.flat.mean(axis=0)).T) / 15.0
+    lift = 1.0 + 2e-5 * np.clip(1.0 - far**2, 0.0, None) ** 4
+    made = judged(Mesh(known.mesh.vertices * np.column_stack([lift, lift, np.ones_like(lift)]), known.mesh.faces))
+    assert made.reached == "rejected"
+    (finding,) = made.findings
+    assert finding.where is not None
+    assert far[int(finding.where["vertex"])] < 2.0
+
+
 def test_a_hemisphere_whose_every_vertex_looks_innocent_is_rejected() -> None:
     mesh = hemisphere(0)
     edges = edges_of(mesh)
@@ -85,6 +167,11 @@ def test_noise_is_admitted_and_what_it_permits_is_said() -> None:
 @pytest.mark.parametrize("name", KNOWN)
 def test_noise_alone_rejects_nothing(name: str, amount: float) -> None:
     assert judged(noisy(KNOWN[name](1, 100, 20).mesh, amount)).reached != "rejected"
+
+
+def test_a_coarse_noisy_mesh_bent_sharply_in_places_is_not_rejected() -> None:
+    """Its noise counts for most where it is bent most: one mean is off by 8.6 of the deviations of all."""
+    assert judged(noisy(KNOWN["oblique cone"](300, 100, 20).mesh, 1e-7, 300)).reached == "inconclusive"
 
 
 def test_a_strip_without_vertices_inside_allows_no_verdict() -> None:

@@ -293,7 +293,7 @@ def test_an_edge_that_is_itself_short_is_said_and_stops_nothing() -> None:
 
 @pytest.mark.parametrize("chord_mm", [0.02, 0.1, 1.0])
 def test_a_mark_may_end_on_the_exact_outline_whatever_the_chord(chord_mm: float) -> None:
-    """A side that bulges by the chord is cut straight: the mark that ends on the bulge belongs to the part all the same."""
+    """A side that bulges by the chord is cut straight: a mark that ends on the bulge still belongs."""
     from tests.stages.write.patterns import line_mark, pattern, polygon_edges
 
     corners = ((0.0, 0.0), (100.0, 0.0), (100.0, 60.0), (0.0, 60.0))
