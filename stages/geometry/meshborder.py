@@ -11,7 +11,7 @@ from stages.geometry.meshtopology import Edges
 def beyond(mesh: Mesh, edges: Edges, points: Points3, there: OnMesh) -> Values:
     """Return how far points lie beyond the border, along the triangle that each is nearest to, mm; 0 inside.
 
-    there: their nearest places.  What is nearest to a vertex of the border may be found on a triangle without a free side.
+    there: their nearest places.  What is nearest to a border vertex may be found on a triangle without a free side.
     """
     free = edges.count[edges.of_half].reshape(-1, 3) == 1
     on_border = np.isin(np.arange(len(mesh.vertices)), mesh.faces[free | np.roll(free, 1, axis=1)])
