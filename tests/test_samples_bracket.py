@@ -67,3 +67,14 @@ def test_there_is_one_bend_line_in_the_middle_of_each_bend(bracket: dict) -> Non
 def test_the_file_is_small_and_of_the_script_beside_it() -> None:
     content = (SAMPLES / "bracket" / "bracket.step").read_text("ascii")
     assert len(content) < 100_000 and "MILLI" in content
+
+
+def test_both_bends_are_alike_however_long_the_base_between_them_is(bracket: dict) -> None:
+    rows = stage(bracket, "unroll")["detail"]["bends"]
+    hits = [row for row in rows if row["name"].startswith("bend")]
+    middle = INSIDE + THICKNESS / 2.0
+    for row in hits:
+        assert_near(
+            row["facet_error_mm"], middle * (1.0 - np.cos(pi / 4.0)), bound=1e-6, why="rho (1 - cos(delta / 2))"
+        )
+    assert len(hits) == 2

@@ -166,12 +166,19 @@ CAUTIOUS = 0.95
 
 
 def facet_errors(bent: Bent, run: Run, count: int) -> Values:
-    """Return how far the facets about `count` hits are off the middle surface, mm: rho (1 - cos(delta / 2))."""
-    ends = places(bent.bends, run, np.arange(count + 1) / count)
-    reach = across(bent, ends, bent.sheet.middle_mm)
+    """Return how far the facets about `count` hits are off the middle surface, mm: rho (1 - cos(delta / 2)).
+
+    What is flat between two steps bends with neither: a step reaches from where its turning begins to where it ends.
+    """
+    begins, ends = (places(bent.bends, run, (np.arange(count) + share) / count) for share in (JUST, 1.0 - JUST))
+    reach = across(bent, ends, bent.sheet.middle_mm) - across(bent, begins, bent.sheet.middle_mm)
     step = abs(run_angle(run)) / count
-    off: Values = np.diff(reach, axis=0).max(axis=1) / step * (1.0 - cos(step / 2.0))
+    off: Values = reach.max(axis=1) / (step * (1.0 - 2.0 * JUST)) * (1.0 - cos(step / 2.0))
     return off
+
+
+JUST = 1e-9
+"""Share of a step by which its ends are looked for inside it, where the part turns."""
 
 
 def flat_rulings(neutral: RuledSurface, development: Development, v: list[float]) -> list[Points2]:
