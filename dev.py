@@ -25,7 +25,7 @@ OLDEST = (3, 11)
 DEMO = "samples/hopper/job.toml", "out/hopper"
 CHORES: dict[str, list[list[str]]] = {
     "demo": [["-m", "pipeline", "run", DEMO[0], "-o", DEMO[1]]],
-    "test": [["-m", "pytest"]],
+    "test": [["-m", "pytest", "-n", "auto", "--dist", "loadfile"]],
     "lint": [["-m", "ruff", "check", "."], ["-m", "ruff", "format", "--check", "."]],
     "types": [["-m", "mypy"]],
     "imports": [["-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]],
