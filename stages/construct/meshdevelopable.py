@@ -19,7 +19,7 @@ from stages.geometry.arrays import Numbers, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshchart import interpolated
 from stages.geometry.meshenvelope import Developed, common, patch_of
-from stages.geometry.meshfit import fitted, stars
+from stages.geometry.meshfit import MOST_TRIANGLES, fitted, stars
 from stages.geometry.meshrecognise import SHARE, Deviation, deviation_of, rounding
 from stages.geometry.meshrulings import enveloped
 from stages.geometry.meshtopology import edges_of
@@ -51,7 +51,7 @@ class Found:
 
 def developable(part: Part, mesh: Mesh, loops: Sequence[Numbers], tol: Tolerances) -> Found | None:
     """Return the developable of a mesh that is one oriented disc, maybe with holes; None where it is not known."""
-    if len(mesh.vertices) < FEWEST:
+    if len(mesh.vertices) < FEWEST or len(mesh.faces) > MOST_TRIANGLES:
         return None
     size = float(norm(np.ptp(mesh.vertices, axis=0)))
     enough = max(rounding(mesh.vertices), ENOUGH * size)

@@ -11,6 +11,7 @@ flattening: `unroll` may still refuse.
 import numpy as np
 
 from stages.errors import NoSolutionError
+from stages.geometry.meshfit import MOST_TRIANGLES
 from stages.model.report import Evidence, Metric, Outcome, StageReport, Where
 from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
@@ -19,7 +20,7 @@ from stages.verify.bending import bending
 from stages.verify.crossing import crossings
 from stages.verify.examined import Examined, examine
 from stages.verify.findings import rejection, singular_findings
-from stages.verify.meshes import verdict
+from stages.verify.meshes import too_fine, verdict
 from stages.verify.sampled import Extreme
 
 __all__ = ["verify"]
@@ -62,6 +63,8 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
 
 def _mesh(surface: MeshSurface, tol: Tolerances) -> Outcome[Certificate | None]:
     """Return the certificate of a mesh that was not recognised: judged by the map that it will be cut by."""
+    if len(surface.mesh.faces) > MOST_TRIANGLES:
+        return Outcome(None, StageReport("verify", surface.part.name, (), (too_fine(surface),)))
     judged = verdict(surface, tol)
     detail: dict[str, object] = {"class": judged.reached, "regions": list(judged.regions)}
     report = StageReport("verify", surface.part.name, judged.metrics, judged.findings, detail)

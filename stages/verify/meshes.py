@@ -22,6 +22,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from stages.errors import NoSolutionError
+from stages.geometry.meshfit import MOST_TRIANGLES
 from stages.geometry.meshflat import MeshMap
 from stages.model.report import Finding, Metric, Where
 from stages.model.surface import MeshSurface, no_pairs
@@ -70,6 +71,15 @@ class Verdict(NamedTuple):
     reached: Reached
     flat: MeshMap
     regions: tuple[dict[str, object], ...] = ()
+
+
+def too_fine(surface: MeshSurface) -> Finding:
+    """Return that a mesh has more triangles than are laid flat."""
+    message = (
+        f"{len(surface.mesh.faces)} triangles, and no plane, cylinder, cone or bent sheet: at most {MOST_TRIANGLES} "
+        "are laid flat; export it coarser, 10 000 triangles are good for 1e-7 of its size"
+    )
+    return Finding("mesh-too-fine", message, fatal=True)
 
 
 def verdict(surface: MeshSurface, tol: Tolerances) -> Verdict:

@@ -5,12 +5,14 @@ import pytest
 
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcurvature import defects
+from stages.geometry.meshfit import MOST_TRIANGLES
 from stages.geometry.meshflat import flattened
 from stages.geometry.meshlengths import chords
 from stages.geometry.meshtopology import edges_of
 from stages.model.material import Material
 from stages.model.surface import MeshSurface
 from stages.model.tolerances import Tolerances
+from stages.verify import verify
 from stages.verify.meshbounds import cells, closer, curvatures, warp
 from stages.verify.meshes import Verdict, verdict
 from stages.verify.meshstudy import study
@@ -139,6 +141,15 @@ def test_a_dent_is_in_one_region_and_in_no_other() -> None:
     (finding,) = made.findings
     assert finding.where is not None
     assert far[int(finding.where["vertex"])] < 2.0
+
+
+def test_a_mesh_too_fine_to_be_laid_flat_is_refused_at_once_with_the_remedy() -> None:
+    mesh = Mesh(np.eye(3), np.tile(np.arange(3), (MOST_TRIANGLES + 1, 1)))
+    outcome = verify(MeshSurface(part(EXAMPLE_1), mesh, (np.arange(3),), 1.0), Tolerances())
+    assert outcome.product is None
+    (finding,) = outcome.report.findings
+    assert (finding.code, finding.fatal) == ("mesh-too-fine", True)
+    assert "coarser" in finding.message
 
 
 def test_a_hemisphere_whose_every_vertex_looks_innocent_is_rejected() -> None:
