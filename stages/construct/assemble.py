@@ -49,16 +49,9 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances, meshes: Meshes = NO_MESHES) -
             return Built(ruled_patches(c0, c1), findings=(*_open("c0", c0, tol), *_open("c1", c1, tol)))
         case Cone() if spec.directrix is None:
             return Built((frustum(spec),)) if not _is_cut(spec) else _made(cut_frustum(spec, frustum(spec)))
-        case Cone() if _is_cut(spec):
-            link = directrix_of(spec)
-            return _joined("directrix", link, _made(cut_cone(spec, link.curves)), tol)
         case Cone():
             link = directrix_of(spec)
-            patches = cone_patches(spec, link)
-            return Built(
-                patches,
-                findings=(*_open("directrix", link, tol), *apex_findings(link.curves, vector(spec.apex or ()))),
-            )
+            return _joined("directrix", link, _cone(spec, link), tol)
         case Cylinder() if spec.saddle is not None:
             patches, findings = saddled_cylinder(spec, spec.saddle)
             return Built(patches, findings=findings)
@@ -93,6 +86,13 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances, meshes: Meshes = NO_MESHES) -
         case Strip():
             return strip_of([patches_of(piece, tol, meshes) for piece in spec.pieces], tol)
     raise ValueError(f"no construction for {type(spec).__name__}")
+
+
+def _cone(spec: Cone, link: Chain) -> Built:
+    """Return a cone over a directrix, cut by planes or by fractions of the way to its apex."""
+    if _is_cut(spec):
+        return _made(cut_cone(spec, link.curves))
+    return Built(cone_patches(spec, link), findings=apex_findings(link.curves, vector(spec.apex or ())))
 
 
 def _is_cut(spec: Cone) -> bool:

@@ -10,14 +10,14 @@ follow the turning of the surface (`forming`, `rolls`).  A pattern that overlaps
 that the job accepts, is refused.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from stages.geometry import arcpath
 from stages.geometry.arrays import Points2
 from stages.geometry.development import develop
 from stages.geometry.flatmap import Development
 from stages.geometry.relaxed import relaxed
-from stages.model.pattern import FlatPattern, Mark
+from stages.model.pattern import FlatPattern
 from stages.model.report import Metric, Outcome, StageReport
 from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface
 from stages.model.tolerances import CLASSES, Class, Tolerances, class_by_strain
@@ -25,18 +25,19 @@ from stages.unroll import outline
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.divide import division
 from stages.unroll.features import Features, on_strip
+from stages.unroll.finished import box, finished
 from stages.unroll.forming import folded, formed, with_pieces
 from stages.unroll.limits import area_findings, overlap, overlap_findings, strain_findings
 from stages.unroll.meshes import flatten_mesh
 from stages.unroll.onpart import on_part
-from stages.unroll.plates import flatten, rotations
+from stages.unroll.plates import flatten
 from stages.unroll.rolls import rolled
 from stages.unroll.sensitivity import sensitivity
 from stages.unroll.sides import surface_figures
 from stages.unroll.strain import as_detail, strain_field
 from stages.unroll.tangencies import tangency_marks
 from stages.unroll.thickness import Neutral, neutral
-from stages.unroll.trimmed import Trimmed, box, trimmed, with_trim
+from stages.unroll.trimmed import Trimmed, trimmed, with_trim
 
 __all__ = ["unroll"]
 
@@ -126,26 +127,8 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     if not report.passed:
         return Outcome(None, report)
     tangencies = on_part(tangency_marks(surface, laid.development), made.outer, made.inner)
-    return Outcome(_pattern(surface, made, (*made.marks, *lines, *tangencies), corners, tol), report)
-
-
-def _pattern(
-    surface: RuledSurface, made: Features, marks: tuple[Mark, ...], corners: Points2, tol: Tolerances
-) -> FlatPattern:
-    spec, material = surface.part.spec, surface.part.material
-    return FlatPattern(
-        part=spec.name,
-        quantity=spec.quantity,
-        outer=made.outer,
-        inner=made.inner,
-        marks=marks,
-        texts=made.texts,
-        label_at=outline.label_place(made.outer.path, tuple(hole.path for hole in made.inner), tol.chord_mm),
-        corners=corners,
-        rotations=rotations(spec.rotations),
-        thickness_mm=material.thickness_mm,
-        density_kg_m3=material.density_kg_m3,
-    )
+    whole = replace(made, marks=(*made.marks, *lines, *tangencies))
+    return Outcome(finished(surface.part, whole, corners, tol), report)
 
 
 def _class(strain: Metric, by_warp: Class) -> str:

@@ -15,7 +15,7 @@ are measured here and not judged; `verify` judged them, over cells of many trian
 
 import numpy as np
 
-from stages.geometry import arcpath, contours
+from stages.geometry import contours
 from stages.geometry.arrays import Points2
 from stages.geometry.lying import lying
 from stages.geometry.meshflat import MeshMap
@@ -30,12 +30,12 @@ from stages.model.surface import Certificate, MeshSurface, Placed
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline
 from stages.unroll.features import Features, Flat, assembled
+from stages.unroll.finished import box, finished
 from stages.unroll.limits import overlap, overlap_findings
 from stages.unroll.meshdistortion import Loops, areas, distortion, sides, strain_field
 from stages.unroll.meshneutral import mesh_neutral
 from stages.unroll.meshsewing import sewing, without_zigzag
 from stages.unroll.notches import Notch, notched, on_outline
-from stages.unroll.plates import rotations
 
 POSITIONS = 1e-9
 """What flat positions are worth without any noise, as a share of the size."""
@@ -80,12 +80,12 @@ def flatten_mesh(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPatte
         *sheet.findings,
         *made.findings,
     )
-    corners = _box(made.outer)
+    corners = box(made.outer)
     detail = {"class": certificate.reached} | _figures(surface, flat, made, corners) | sheet.detail
     report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
-    return Outcome(_pattern(surface, made, corners, tol), report)
+    return Outcome(finished(surface.part, made, corners, tol), report)
 
 
 def _loops(surface: MeshSurface, flat: MeshMap) -> Loops:
@@ -136,11 +136,6 @@ def _closed(points: Points2) -> Points2:
     return closed
 
 
-def _box(outer: Contour) -> Points2:
-    low_x, low_y, high_x, high_y = arcpath.bounds(outer.path)
-    return np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
-
-
 def _figures(surface: MeshSurface, flat: MeshMap, made: Features, corners: Points2) -> dict[str, object]:
     """Return the figures of both sides: areas of the triangles on the surface, and of what is cut."""
     width, height = corners[2] - corners[0]
@@ -159,20 +154,3 @@ def _figures(surface: MeshSurface, flat: MeshMap, made: Features, corners: Point
         "flattened_on": flat.kind,
         "strain_field": strain_field(surface, flat),
     }
-
-
-def _pattern(surface: MeshSurface, made: Features, corners: Points2, tol: Tolerances) -> FlatPattern:
-    spec, material = surface.part.spec, surface.part.material
-    return FlatPattern(
-        part=spec.name,
-        quantity=spec.quantity,
-        outer=made.outer,
-        inner=made.inner,
-        marks=made.marks,
-        texts=made.texts,
-        label_at=outline.label_place(made.outer.path, tuple(hole.path for hole in made.inner), tol.chord_mm),
-        corners=corners,
-        rotations=rotations(spec.rotations),
-        thickness_mm=material.thickness_mm,
-        density_kg_m3=material.density_kg_m3,
-    )

@@ -1,55 +1,32 @@
 """Plates need no unrolling: their contours are traced as they are, areas and lengths measured on both sides."""
 
-from typing import Literal
-
-import numpy as np
-
-from stages.geometry import arcpath, contours
+from stages.geometry import contours
 from stages.geometry.arrays import Array
 from stages.geometry.cover import doubled
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric, Outcome, StageReport
-from stages.model.scalars import Angle
 from stages.model.surface import Plate
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline
 from stages.unroll.features import Features, on_plate
-
-
-def rotations(asked: Literal["free"] | tuple[Angle, ...] | None) -> tuple[float, ...] | Literal["free"] | None:
-    """Return a part's own rotations in degrees; None: what the nest allows."""
-    return tuple(float(angle) for angle in asked) if isinstance(asked, tuple) else asked
+from stages.unroll.finished import box, finished
 
 
 def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
     """Return the plate as a pattern in its own frame."""
-    spec, material = plate.part.spec, plate.part.material
+    spec = plate.part.spec
     contour = outline.contour(plate.outline, tol.chord_mm, spec.name)
     holes = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i}") for i, hole in enumerate(plate.holes, 1))
     overlap = sum(doubled(contour.path) for contour in (contour, *holes))
     metrics = _metrics(overlap, tol)
     crossed = _crossing_findings(metrics[-1])
     made = Features(contour, findings=crossed) if crossed else on_plate(plate, contour, holes)
-    low_x, low_y, high_x, high_y = arcpath.bounds(contour.path)
-    corners = np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
+    corners = box(contour)
     detail = {"class": "exact"} | _detail(made, corners)
     report = StageReport("unroll", spec.name, (*metrics, *made.metrics), made.findings, detail)
     if not report.passed:
         return Outcome(None, report)
-    pattern = FlatPattern(
-        part=spec.name,
-        quantity=spec.quantity,
-        outer=made.outer,
-        inner=made.inner,
-        marks=made.marks,
-        label_at=outline.label_place(made.outer.path, tuple(hole.path for hole in made.inner), tol.chord_mm),
-        corners=corners,
-        rotations=rotations(spec.rotations),
-        thickness_mm=material.thickness_mm,
-        density_kg_m3=material.density_kg_m3,
-        texts=made.texts,
-    )
-    return Outcome(pattern, report)
+    return Outcome(finished(plate.part, made, corners, tol), report)
 
 
 def _metrics(overlap: float, tol: Tolerances) -> tuple[Metric, ...]:

@@ -17,8 +17,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from stages.geometry import quadrature
-from stages.geometry.arcpath import bounds
-from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector2, cross2, norm
+from stages.geometry.arrays import Array, ArrayValue, Values, Vector2, cross2, norm
 from stages.geometry.differentiation import matrix
 from stages.geometry.flatmap import Development
 from stages.geometry.mapped import LEAST_STRETCH, FlatStrip, MappedEdge, backwards, images
@@ -180,9 +179,3 @@ def with_trim(metrics: tuple[Metric, ...], cut: Trimmed) -> tuple[Metric, ...]:
     """Return the metrics of the patches with lengths and area of the trimmed part in the place of theirs."""
     of_trim = {metric.name: metric for metric in cut.metrics}
     return tuple(of_trim.get(metric.name, metric) for metric in metrics)
-
-
-def box(outer: Contour) -> Points2:
-    """Return the corners of the box round a contour, counter-clockwise from the least, mm."""
-    low_x, low_y, high_x, high_y = bounds(outer.path)
-    return np.array([[low_x, low_y], [high_x, low_y], [high_x, high_y], [low_x, high_y]])
