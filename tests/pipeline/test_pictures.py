@@ -254,9 +254,9 @@ def test_two_hundred_copies_on_one_sheet_are_drawn_in_time_and_alike() -> None:
     _, pattern = made(PLATE)
     layout = many(pattern, 200)
     first = sheet_picture(layout, {"part": pattern})
-    start = time.perf_counter()
+    start = time.process_time()
     assert sheet_picture(layout, {"part": pattern}) == first
-    assert time.perf_counter() - start < 2.0
+    assert time.process_time() - start < 2.0
     assert count(first, FILLS[0]) > 10_000
 
 

@@ -240,15 +240,15 @@ def test_a_placed_part_keeps_its_length_and_area_in_the_file(motion: Rigid2, par
 
 def test_a_whole_job_is_quick() -> None:
     """Ten parts and three sheets: about 0.5 s; ten times that would be a defect, not a slow computer."""
-    from time import perf_counter
+    from time import process_time
 
     parts = [strip(f"part-{i}") for i in range(10)]
     sheet = Sheet("plate", 3000.0, 1500.0)
     places = tuple(
         Placement(f"part-{i}", 1, Rigid2(10.0 + 640.0 * (i % 4), 10.0 + 310.0 * (i // 4))) for i in range(10)
     )
-    start = perf_counter()
+    start = process_time()
     outcome = write(parts, Nesting(tuple(SheetLayout(sheet, k, places, 0.5) for k in (1, 2, 3))), MACHINE)
-    assert perf_counter() - start < 5.0
+    assert process_time() - start < 5.0
     assert outcome.report.passed
     assert isinstance(outcome.product[0], CutFile)
