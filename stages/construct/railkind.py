@@ -17,8 +17,9 @@ from stages.geometry.arrays import Values, norm, unit
 from stages.geometry.extremum import maximum
 from stages.geometry.joins import join
 from stages.geometry.railbound import Bound
-from stages.geometry.railgraph import Rules
+from stages.geometry.railgraph import SMOOTH, Rules
 from stages.geometry.railstrip import Rail, Strip, bounds, closed_bounds, closed_strip, open_strip
+from stages.geometry.railzero import angles
 from stages.geometry.ruled import RuledPatch, curvature
 from stages.model.rails import Rails
 from stages.model.report import Finding
@@ -64,7 +65,7 @@ def _is_closed(rail: Chain, tol: Tolerances) -> bool:
 def _refusal(rail_a: Rail, rail_b: Rail, *, closed: bool) -> Finding:
     """Return why there is no strip: the fold that none avoids, its place, and what would help."""
     folded = best_strip(rail_a, rail_b, Rules(ANY_FOLD), closed=closed)
-    least = f"; with folds the best strip has {_described(folded)}" if folded is not None else ""
+    least = f"; with folds the best strip has {_described(folded, closed=closed)}" if folded is not None else ""
     coarse, fine = (closed_bounds if closed else bounds)(rail_a, rail_b)
     if fine.fold_rad > 0.0:
         bound = f"every strip folds by at least {np.degrees(fine.fold_rad):.6g} deg somewhere"
@@ -77,15 +78,26 @@ def _refusal(rail_a: Rail, rail_b: Rail, *, closed: bool) -> Finding:
 
 
 def _help(at: Bound, rail_a: Rail, rail_b: Rail, *, closed: bool) -> str:
-    """Return what would help: open rails can be cut elsewhere, closed ones need another shape, skew lines a fold."""
+    """Return what would help: open rails can be cut elsewhere, closed ones rounded or reshaped, skew lines folded."""
     folds = 'set folds = "allow"'
     if _is_straight(rail_a) and _is_straight(rail_b):
         return (
             f"no part of two skew straight lines has a smooth strip: {folds} for two plane triangles along a diagonal"
         )
     if closed:
-        return f"make the rails turn alike at a = {at.t:.3g}, b = {at.s:.3g}, or {folds}"
+        corners = [name for name, rail, x in (("a", rail_a, at.t), ("b", rail_b, at.s)) if _has_corner(rail, x)]
+        what = f"round the corners of rail {' or '.join(corners)}, as" if corners else "make the rails turn alike"
+        return f"{what} at a = {at.t:.3g}, b = {at.s:.3g}, or {folds}"
     return f"trim or extend the rails at {_place(at.t, at.s, len(rail_a), len(rail_b))}, or {folds}"
+
+
+def _has_corner(rail: Rail, x: float) -> bool:
+    """Return whether a closed rail turns sharply at a parameter."""
+    if x != round(x):
+        return False
+    number = round(x) % len(rail)
+    before, after = (rail[k].jet(np.array([v]), 1)[1, 0] for k, v in ((number - 1, 1.0), (number, 0.0)))
+    return float(angles(before, after)) > SMOOTH
 
 
 def _is_straight(rail: Rail) -> bool:
@@ -100,18 +112,19 @@ TANGENTS = 9
 ONE_WAY = 1e-12
 
 
-def _described(strip: Strip) -> str:
-    """Return number and size of the folds of a strip."""
-    angles = _fold_angles(tuple(piece.patch for piece in pieces(strip)))
-    if not angles:
-        return "none to be measured"
-    count = f"{len(angles)} fold{'s' * (len(angles) > 1)}"
-    return f"{count}, the largest {max(angles):.6g} deg"
+def _described(strip: Strip, *, closed: bool) -> str:
+    """Return number and size of the folds of a strip, that between its ends aside."""
+    patches = tuple(piece.patch for piece in pieces(strip))
+    found = _fold_angles(patches)
+    count = f"{len(found)} fold{'s' * (len(found) > 1)}, the largest {max(found):.6g} deg" if found else ""
+    seam = _fold_angles((patches[-1], patches[0])) if closed else []
+    at_seam = f"{seam[0]:.6g} deg at its seam" if seam else ""
+    return ", and ".join(part for part in (count, at_seam) if part) or "none to be measured"
 
 
 def _fold_angles(patches: tuple[RuledPatch, ...]) -> list[float]:
-    angles = [float(np.degrees(join(a, b).normal_rad)) for a, b in pairwise(patches)]
-    return [angle for angle in angles if angle > STILL_SMOOTH_DEG]
+    folds = [float(np.degrees(join(a, b).normal_rad)) for a, b in pairwise(patches)]
+    return [fold for fold in folds if fold > STILL_SMOOTH_DEG]
 
 
 def _place(t: float, s: float, most_t: int, most_s: int) -> str:
@@ -124,10 +137,10 @@ def _place(t: float, s: float, most_t: int, most_s: int) -> str:
 
 
 def _folds(patches: tuple[RuledPatch, ...]) -> tuple[Finding, ...]:
-    angles = _fold_angles(patches)
-    if not angles:
+    found = _fold_angles(patches)
+    if not found:
         return ()
-    message = f"the strip folds along {len(angles)} ruling{'s' * (len(angles) > 1)}, by at most {max(angles):.6g} deg"
+    message = f"the strip folds along {len(found)} ruling{'s' * (len(found) > 1)}, by at most {max(found):.6g} deg"
     return (Finding("folds", message),)
 
 
@@ -141,7 +154,7 @@ def _smaller(patches: tuple[RuledPatch, ...], rail_a: Rail, rail_b: Rail, *, clo
     if more is None:
         return ()
     most = np.ceil(MORE_FOLDS * np.degrees(least) * 1e3) / 1e3
-    message = f'another strip has {_described(more)}: set folds = "forbid" and max_warp = {most:g}'
+    message = f'another strip has {_described(more, closed=closed)}: set folds = "forbid" and max_warp = {most:g}'
     return (Finding("smaller-folds", message),)
 
 

@@ -180,7 +180,7 @@ def _without(parts: tuple[Leg, ...], k: int) -> tuple[Leg, ...]:
 def legs_between(parts: Sequence[Leg], corners: Array) -> tuple[Leg, ...]:
     """Return the legs with their ends at the corners and the knots between that still rise."""
     made = []
-    for leg, (low, high) in zip(parts, pairwise(corners), strict=True):
+    for leg, (low, high) in zip(parts, pairwise(_from_end_to_end(corners)), strict=True):
         start, end = np.maximum(low, 0.0), np.maximum(high, np.maximum(low, 0.0))
         if leg.move == "along":
             inner = leg.knots[1:-1]
@@ -192,6 +192,18 @@ def legs_between(parts: Sequence[Leg], corners: Array) -> tuple[Leg, ...]:
         if (end - start).sum() > TINY:
             made.append(leg.replace(knots=knots))
     return tuple(made)
+
+
+def _from_end_to_end(corners: Array) -> Array:
+    """Return the corners with those that lie on the first or the last but for rounding put there.
+
+    The leg between goes, and its neighbour must begin where the rails do: if they meet there its rulings shrink to
+    nothing, and one of 1e-14 left over would look anywhere.
+    """
+    for end in corners[[0, -1]]:
+        near = np.abs(corners - end).sum(axis=1) <= TINY
+        corners = np.where(near[:, None], end, corners)
+    return corners
 
 
 def _level(start: Values, end: Values) -> bool:

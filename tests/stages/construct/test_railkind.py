@@ -138,6 +138,27 @@ def test_rails_that_share_one_end_point_have_a_strip_from_cones_there(backwards:
     assert made.value("construct", "join_normal_deg") < 1e-6
 
 
+@pytest.mark.parametrize("seed", [3, 26, 35])
+def test_an_arc_that_turns_at_a_shared_end_point_is_unrolled(seed: int) -> None:
+    """The corner of no length there leaves none of its rounding: a ruling of 1e-14 would look anywhere."""
+    rng = np.random.default_rng(seed)
+    a, b = (_from_origin(rng, aside) for aside in (0.0, 1.6))
+    made = passage(curves(a, b))
+    assert made.refused_by is None
+    rows = made.reports["construct"].detail["pieces"]
+    assert isinstance(rows, list)
+    assert (rows[0]["kind"], rows[0]["a"][0], rows[0]["b"][0]) == ("ruled", 0.0, 0.0)
+    assert made.value("verify", "max_warp_deg") < 1e-9
+    assert made.value("construct", "join_normal_deg") < 1e-6
+    assert made.value("unroll", "area_error") < 1e-12
+
+
+def _from_origin(rng: np.random.Generator, aside: float) -> list[list[float]]:
+    """Return the control points of a cubic that begins in the origin, its other end some way aside."""
+    away = [[x, aside * x / 6.0 + rng.normal(0.0, 0.5), rng.normal(0.0, 0.5)] for x in (2.0, 4.0, 6.0)]
+    return [[0.0, 0.0, 0.0], *np.round(away, 6).tolist()]
+
+
 def test_two_frames_fold_at_their_corners_alone_and_the_folds_are_bend_lines() -> None:
     """A pyramid's stump: normals (3, 0, 1) / sqrt 10 turn by acos(1/10) at each corner; the fourth is the seam."""
     made = passage(rails(frame(2, 0), frame(1, 3), folds="allow"))
@@ -156,7 +177,33 @@ def test_two_frames_fold_at_their_corners_alone_and_the_folds_are_bend_lines() -
 def test_frames_are_refused_without_folds() -> None:
     made = passage(rails(frame(2, 0), frame(1, 3)))
     assert made.codes("construct", fatal=True) == ["no-smooth-strip"]
-    assert "3 folds, the largest 84.2608 deg" in made.reports["construct"].findings[0].message
+    (finding,) = made.reports["construct"].findings
+    assert "every strip folds by at least 79.89" in finding.message
+    assert "3 folds, the largest 84.2608 deg, and 84.2608 deg at its seam" in finding.message
+    assert "round the corners of rail a, as at a = 1, b = 1.49" in finding.message
+    assert finding.where is not None
+    assert finding.where["a"] == 1.0
+
+
+TURNS = ((1, 0), (0, 1), (-1, 0), (0, -1), (1, 0), (0, 1))
+
+
+def rounded_frame() -> Table:
+    """Return straight sides of 2 between quarter circles of radius 1, the corners of a square of side 4."""
+    made: list[Table] = []
+    for k, (x, y) in enumerate([(1, 1), (-1, 1), (-1, -1), (1, -1)]):
+        (out, up), (dx, dy) = TURNS[k + 1 : k + 3]
+        start = [x + out, y + up, 0]
+        arc = {"center": [x, y, 0], "radius": 1, "normal": [0, 0, 1], "start": 90 * k, "end": 90 * k + 90}
+        made += [{"arc": arc}, {"line": [start, [start[0] + 2 * dx, start[1] + 2 * dy, 0]]}]
+    return {"chain": made}
+
+
+def test_a_frame_over_a_frame_that_is_rounded_at_its_corners_has_a_strip() -> None:
+    """What the refusal asks for, done."""
+    made = passage(rails(rounded_frame(), frame(1, 3)))
+    assert made.refused_by is None
+    assert made.value("construct", "join_normal_deg") < 1e-9
 
 
 def test_closed_rails_with_a_strip_have_no_lower_bound() -> None:
