@@ -1,7 +1,9 @@
 """Parts for tests, written as in a job file with its units resolved, and the way through the first three stages."""
 
+import json
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 
 import msgspec
@@ -88,6 +90,23 @@ def passage(surface: Table, tol: Tolerances = DEFAULT, material: Material = UNKN
         flat = unroll(certificate, tol)
         reports["unroll"], pattern = flat.report, flat.product
     return Passage(made.product, certificate, pattern, reports)
+
+
+def whole(table: Table) -> Passage:
+    """Return what became of a part; each is made once."""
+    return _whole(json.dumps(table))
+
+
+@cache
+def _whole(table: str) -> Passage:
+    return passage(json.loads(table))
+
+
+def edges(table: Table, side: str = "flat") -> dict[str, float]:
+    """Return the lengths of the edges of a part that is made once, mm."""
+    found = whole(table).side(side)["edges"]
+    assert isinstance(found, dict)
+    return found
 
 
 def patches(surface: Table) -> tuple[RuledPatch, ...]:

@@ -3,7 +3,7 @@
 Edges get their lengths on the surface fitted to the vertices (`meshfit`, `meshlengths`); three lengths make a
 triangle; the triangles are laid flat conformally (`intrinsic`) and then as rigidly as possible (`arap`).  On chords
 every method lands on the unrolled polyhedron, of which the error falls with the square of the edges, 1e-5 of the
-size at 10 000 triangles; the fit leaves 1e-8 and less.  Where noise or creases make its slopes worthless the chords
+size at 10 000 triangles; the fit leaves 3e-8 and less.  Where noise or creases make its slopes worthless the chords
 are taken, and the map says so.
 
 For discs, holes allowed.  A developable mesh comes out at rest; any other with the least squares of its principal

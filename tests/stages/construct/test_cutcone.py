@@ -1,8 +1,5 @@
 """Cones cut by planes: ellipses in closed form, 40-digit lengths and areas, proofs, the plane itself, refusals."""
 
-import json
-from functools import cache
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,7 +12,7 @@ from stages.geometry.ruled import warp
 from stages.geometry.stepped import Stepped
 from tests import oracles
 from tests.near import assert_near, assert_relative
-from tests.parts import Passage, Table, passage, patches
+from tests.parts import Table, edges, passage, patches, whole
 
 HALF_ANGLE = 20
 SLOPED: Table = {"point": [0, 0, 300], "normal": ["-0.4", 0, 1]}
@@ -57,22 +54,6 @@ QUARTER: Table = {
 ROUND = [OBLIQUE_CUT, FRUSTUM, PIPE, HOPPER, SMALL, LARGE]
 EXACT = [BEZIER, QUARTER]
 EVERY = pytest.mark.parametrize("table", ROUND + EXACT)
-
-
-def whole(table: Table) -> Passage:
-    """Return what became of a cone; each is made once."""
-    return _whole(json.dumps(table))
-
-
-@cache
-def _whole(table: str) -> Passage:
-    return passage(json.loads(table))
-
-
-def edges(table: Table, side: str = "flat") -> dict[str, float]:
-    found = whole(table).side(side)["edges"]
-    assert isinstance(found, dict)
-    return found
 
 
 # Oracles: the rulings of both forms, cut one by one

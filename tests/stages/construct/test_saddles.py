@@ -1,8 +1,5 @@
 """Saddles and tees: closed forms of equal pipes, 40-digit lengths and areas, points on the main pipe, refusals."""
 
-import json
-from functools import cache
-
 import numpy as np
 import pytest
 from mpmath import cos, ellipe, mp, mpf, sin, sqrt
@@ -11,7 +8,7 @@ from stages.geometry.arrays import EPS, norm
 from stages.geometry.ruled import warp
 from tests import oracles
 from tests.near import assert_near, assert_relative
-from tests.parts import Passage, Table, passage, patches, troubles
+from tests.parts import Table, edges, passage, patches, troubles, whole
 
 TEE: Table = {"kind": "tee", "branch": 120, "main": 200, "length": 260, "angle": 60, "offset": 20}
 BLUNT: Table = {"kind": "tee", "branch": 1.5, "main": 2, "length": 4, "angle": 125, "offset": "-0.1"}
@@ -20,22 +17,6 @@ EQUAL: Table = {"kind": "tee", "branch": 100, "main": 100, "length": 150}
 SLANTED: Table = {"kind": "tee", "branch": 100, "main": 100, "length": 200, "angle": 50}
 EVERY = pytest.mark.parametrize("table", [TEE, BLUNT, LARGE, EQUAL, SLANTED])
 SMOOTH = pytest.mark.parametrize("table", [TEE, BLUNT, LARGE])
-
-
-def whole(table: Table) -> Passage:
-    """Return what became of a tee; each is made once."""
-    return _whole(json.dumps(table))
-
-
-@cache
-def _whole(table: str) -> Passage:
-    return passage(json.loads(table))
-
-
-def edges(table: Table, side: str = "flat") -> dict[str, float]:
-    found = whole(table).side(side)["edges"]
-    assert isinstance(found, dict)
-    return found
 
 
 def values(table: Table) -> tuple[mpf, mpf, mpf, mpf, mpf]:
