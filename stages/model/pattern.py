@@ -9,6 +9,7 @@ from typing import Literal
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import ArrayValue, Points2, Vector2
 from stages.geometry.plane import PlaneCurve
+from stages.model.sheet import Quality
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,10 @@ class FlatPattern(ArrayValue):
 
     quantity: copies wanted.
     rotations: angles in degrees it may be turned by in the nest, or "free"; None: what the nest allows.
+    quality: what zones of a sheet it may lie in.
+    axis_deg: direction in the flat frame that goes along the grain of the sheet, either way; None: any.
+    axis_band_deg: how far it may stray from it.
+    pair: every second copy is the mirror image.
     label_at: a point inside the part where its name may be written, as far from the contours as can be had.
     corners: c0(0), c1(0), c1(1), c0(1) in the flat frame, shape (4, 2); those of the bounding box for a plate.
     """
@@ -72,3 +77,7 @@ class FlatPattern(ArrayValue):
     thickness_mm: float | None = None
     density_kg_m3: float | None = None
     texts: tuple[Text, ...] = ()
+    quality: Quality = "best"
+    axis_deg: float | None = None
+    axis_band_deg: float = 0.0
+    pair: bool = False
