@@ -1,5 +1,6 @@
 """Set-up and chores in one command each: `python3 dev.py demo | test | lint | types | imports | bench | gallery`.
 
+`bench nest` compares the nesting with other engines; `bench nest --help` says how.
 The standard library only, on Linux, macOS and Windows, Python 3.11 or later.  The environment lies in `.venv`; its
 packages are those of `requirements.lock`, checked by their hashes, through `uv` where it is on the PATH and through
 venv and pip where it is not.  A stamp of lock, project file and Python version makes the second run quick.
@@ -31,6 +32,7 @@ CHORES: dict[str, list[list[str]]] = {
     "imports": [["-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]],
     "gallery": [["samples/gallery.py"]],
     "bench": [["-m", "pytest", "-o", "addopts=", "--benchmark-only", "tests/bench"]],
+    "bench nest": [["-m", "tests.bench.nest"]],
 }
 
 
@@ -72,14 +74,15 @@ def set_up() -> None:
 
 def main() -> None:
     """Set up, and do what was asked for; further words go to the last command of the chore."""
-    name = sys.argv[1] if len(sys.argv) > 1 else ""
+    count = 2 if " ".join(sys.argv[1:3]) in CHORES else 1
+    name = " ".join(sys.argv[1 : 1 + count])
     if sys.version_info < OLDEST:
         sys.exit("dev.py: Python 3.11 or later is needed")
     if name not in CHORES:
         sys.exit(f"usage: python3 dev.py {' | '.join(CHORES)}")
     set_up()
     *before, last = CHORES[name]
-    for words in (*before, [*last, *sys.argv[2:]]):
+    for words in (*before, [*last, *sys.argv[1 + count :]]):
         call(PYTHON, *words)
     if name == "demo":
         print(f"The report, the cut files and a picture of every part lie in {ROOT / DEMO[1]}")

@@ -38,27 +38,68 @@ def cli() -> None:
 @JobPath
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Output folder; out/<job name> if absent.")
 @Settings
+@click.option("--layout", type=click.Path(path_type=Path), metavar="FILE", help="Lay parts as layout.json says.")
 @AsJson
 @click.option("--quiet", is_flag=True, help="No messages but errors.")
-def run(job: Path, out: Path | None, settings: tuple[str, ...], as_json: bool, quiet: bool) -> None:
+def run(
+    job: Path, out: Path | None, settings: tuple[str, ...], *, layout: Path | None, as_json: bool, quiet: bool
+) -> None:
     """Run a job: JOB.toml in, cut files and report out."""
     from pipeline.outputs import outputs
+    from pipeline.report.costs import cost_lines
     from pipeline.report.document import encoded
     from pipeline.report.lines import outcome_line
+    from pipeline.report.stockfigures import sheet_lines
     from pipeline.run import run_job, silent
     from pipeline.store import replacement, safe_name, write_files
 
     ready = load(job, settings, quiet=quiet)
+    if layout is not None:
+        ready = laid(ready, layout, quiet=quiet)
     target = out or Path("out") / safe_name(ready.name)
-    with replacement(target, keep=[job]) as draft:
+    with replacement(target, keep=[job] if layout is None else [job, layout]) as draft:
         result = run_job(ready, silent if quiet else tell)
         report, files = outputs(result)
         write_files(draft, files)
     if not quiet:
+        for line in (*sheet_lines(result), *cost_lines(result)):
+            message(line)
         message(outcome_line(result, str(target), sum(name.endswith(".dxf") for name in files)))
     if as_json:
         click.echo(encoded(report), nl=False)
     sys.exit(result.exit_code)
+
+
+@cli.command()
+@click.argument("folders", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="OUT...")
+@click.option("-o", "--out", type=click.Path(path_type=Path), default=Path("out/pooled"), show_default=True)
+@click.option(
+    "--stock", type=click.Path(path_type=Path), metavar="FILE.toml", help="Stock; that of the first job if absent."
+)
+@AsJson
+@click.option("--quiet", is_flag=True, help="No messages but errors.")
+def nest(folders: tuple[Path, ...], out: Path, stock: Path | None, *, as_json: bool, quiet: bool) -> None:
+    """Nest the parts of finished jobs together, by material and thickness."""
+    from pipeline.finished import all_finished
+    from pipeline.pooled import pool
+    from pipeline.report.document import encoded
+    from pipeline.report.pooldocument import pool_lines, pool_outputs
+    from pipeline.run import silent
+    from pipeline.store import REPORT, replacement, write_files
+    from pipeline.supply import supply_of
+
+    supply = None if stock is None else supply_of(stock)
+    jobs = all_finished(folders)
+    keep = [folder / REPORT for folder in folders] + ([] if stock is None else [stock])
+    with replacement(out, keep=keep) as draft:
+        pooled = pool(jobs, supply, silent if quiet else tell)
+        report, files = pool_outputs(pooled)
+        write_files(draft, files)
+    for line in () if quiet else pool_lines(pooled, str(out)):
+        message(line)
+    if as_json:
+        click.echo(encoded(report), nl=False)
+    sys.exit(pooled.exit_code)
 
 
 @cli.command()
@@ -119,6 +160,16 @@ def load(job: Path, settings: Sequence[str], *, quiet: bool) -> "Job":
     ready = job_of(read(job, settings, told))
     for note in () if quiet else ready.notes:
         message(f"note: {note}")
+    return ready
+
+
+def laid(job: "Job", layout: Path, *, quiet: bool) -> "Job":
+    """Return the job placed by a layout file after telling how much of it stays."""
+    from pipeline.layouts import summary, with_layout
+
+    ready = with_layout(job, layout)
+    if ready.layout is not None and not quiet:
+        message(f"note: {summary(ready.layout)}")
     return ready
 
 

@@ -5,28 +5,46 @@ A part goes by its own name in the report.  In drawings and file names it goes b
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from pipeline.job import Job
-from pipeline.store import safe_names
+from pipeline.store import safe_name, safe_names
+from stages.model.cutfile import Machine, filled
 
 if TYPE_CHECKING:
     from pipeline.run import JobResult, PartRun
     from stages.model.pattern import FlatPattern
     from stages.model.sheet import Nesting, SheetLayout
 
+LONGEST_VALUE = 30
+"""Letters of a value in a file name: all fields together stay below what file systems take."""
+
 
 @dataclass(frozen=True, slots=True)
 class FileNames:
-    """The names in drawings and files of parts and stock, by their names in the job."""
+    """The names in drawings and files of parts and stock, by their names in the job.
+
+    machine: that of the job, with its values in the fields of file names.
+    """
 
     parts: dict[str, str]
     stock: dict[str, str]
+    machine: Machine = field(default_factory=Machine)
 
-    def drawing(self, layout: "SheetLayout") -> str:
-        """Return the path of a nested sheet."""
-        return f"cut/{self.stock[layout.sheet.id]}-{layout.index}.dxf"
+    def drawing(self, layout: "SheetLayout") -> str | None:
+        """Return the path of the drawing of a nested sheet; None where each part has a drawing of its own."""
+        if self.machine.file_per == "part":
+            return None
+        return self.machine.path(self.stock[layout.sheet.id], layout.index)
+
+    def picture(self, layout: "SheetLayout") -> str:
+        """Return the path of the picture of a nested sheet."""
+        return f"preview/{self.stock[layout.sheet.id]}-{layout.index}.png"
+
+    def part_drawings(self, layout: "SheetLayout") -> list[str]:
+        """Return the paths of the drawings of all copies on a sheet, where each part has one of its own."""
+        return [self.machine.part_path(self.parts[placed.part]) for placed in layout.placements]
 
     def patterns(self, patterns: "Sequence[FlatPattern]") -> "list[FlatPattern]":
         """Return the patterns as drawings call them."""
@@ -43,10 +61,26 @@ class FileNames:
 
 def file_names(parts: "Sequence[PartRun]", job: Job) -> FileNames:
     """Return the names of a job's parts, the blanks of divided ones each by itself, and stock in drawings and files."""
-    return FileNames(safe_names(run.part.name for run in parts), safe_names(sheet.id for sheet in job.stock))
+    return FileNames(
+        safe_names(run.part.name for run in parts), safe_names(sheet.id for sheet in job.stock), _named(job)
+    )
+
+
+def _named(job: Job) -> Machine:
+    """Return what the drawings of a job are like, the fields of their names filled as far as they are the job's."""
+    thickness = job.material.thickness_mm
+    values = {
+        "job": job.name,
+        "customer": job.customer,
+        "revision": job.revision,
+        "material": job.material.name,
+        "thickness": None if thickness is None else f"{thickness:g}",
+    }
+    safe = {key: safe_name(value or f"no-{key}")[:LONGEST_VALUE].rstrip(".-") for key, value in values.items()}
+    return replace(job.machine, file_name=filled(job.machine.file_name, safe))
 
 
 def drawings(result: "JobResult") -> dict[str, bytes]:
-    """Return the drawings of a job by their paths; nothing under `cut/` unless the job is made."""
+    """Return the drawings of a job by their paths; of nothing but flat patterns unless the job is made."""
     files = {file.path: file.text.encode() for file in result.write.product or ()}
-    return {path: text for path, text in files.items() if result.status == "made" or not path.startswith("cut/")}
+    return {path: text for path, text in files.items() if result.status == "made" or path.startswith("flat/")}

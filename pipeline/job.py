@@ -1,25 +1,31 @@
 """A job ready to run: the tables of the file turned into the values that the stages take."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
 from pipeline.decode import canonical
-from pipeline.jobfile import JobFile, MaterialTable, ProcessTable, ReadJob, Rotations
+from pipeline.dxftables import machine_of
+from pipeline.jobfile import JobFile, MaterialTable, ProcessTable, ReadJob
 from pipeline.materials import Sourced, look_up
 from pipeline.processes import limits
 from pipeline.provenance import Limit, limits_of
+from pipeline.rates import Rates, rates_of
+from pipeline.stock import options_of, stock_of
 from stages.model.cutfile import Machine
 from stages.model.kfactor import KFactor
 from stages.model.material import Material, Part
 from stages.model.process import Process
+from stages.model.report import Finding
 from stages.model.sheet import NestOptions, Sheet
 from stages.model.tolerances import Tolerances
 
 if TYPE_CHECKING:
     from hashlib import _Hash as Hash
 
+    from pipeline.layouts import Stored
     from stages.geometry.mesh import Mesh
 
 
@@ -32,13 +38,17 @@ class Job:
         count.
     limits: what the parts are held against, and who said so.
     inputs: name and sha256 of the job file and of every file that it points at.
-    notes: what was assumed where the job file leaves a choice.
+    repairs: what of the stock had to be put right.
+    notes: what was assumed where the job file leaves a choice, and the repairs in words.
+    layout: where copies lie already; None: nothing is said.
+    rates: what cutting takes and what is left over is worth.
     """
 
     name: str
     parts: tuple[Part, ...]
     material: Material
     stock: tuple[Sheet, ...] = ()
+    repairs: tuple[Finding, ...] = ()
     process: Process = field(default_factory=Process)
     options: NestOptions = field(default_factory=NestOptions)
     tolerances: Tolerances = field(default_factory=Tolerances)
@@ -51,6 +61,8 @@ class Job:
     limits: tuple[Limit, ...] = ()
     inputs: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
+    layout: "Stored | None" = None
+    rates: Rates = field(default_factory=Rates)
 
 
 def job_of(read: ReadJob) -> Job:
@@ -58,15 +70,17 @@ def job_of(read: ReadJob) -> Job:
     tables = read.tables
     material, material_notes = _material(tables.material)
     process, process_notes = _process(tables.process, material.thickness_mm)
+    stock = stock_of(tables.stock, tables.material.grain)
     return Job(
         name=tables.job.name or read.file.stem,
-        parts=tuple(_part(read, number, material, process) for number in range(len(tables.part))),
+        parts=tuple(_part(read, number, material, process, stock.sheets) for number in range(len(tables.part))),
         material=material,
         process=process,
-        stock=_stock(tables),
-        options=_options(tables),
+        stock=stock.sheets,
+        repairs=stock.repairs,
+        options=options_of(tables.nest, process.kerf_mm),
         tolerances=_tolerances(tables),
-        machine=Machine(tables.dxf.flavour, tables.dxf.version),
+        machine=machine_of(tables.dxf),
         pictures="png" in tables.report.formats,
         customer=tables.job.customer,
         revision=tables.job.revision,
@@ -74,11 +88,12 @@ def job_of(read: ReadJob) -> Job:
         digest=_digest(read),
         limits=limits_of(tables),
         inputs=read.inputs,
-        notes=(*read.notes, *material_notes, *process_notes),
+        notes=(*read.notes, *material_notes, *process_notes, *stock.told),
+        rates=rates_of(tables.process, tables.nest),
     )
 
 
-def _part(read: ReadJob, number: int, material: Material, process: Process) -> Part:
+def _part(read: ReadJob, number: int, material: Material, process: Process, stock: Sequence[Sheet]) -> Part:
     """Return one part, with the mesh or the faces that its file holds if it is made from one."""
     spec, source = read.tables.part[number], read.meshes.get(number)
     if number in read.faces:
@@ -89,8 +104,9 @@ def _part(read: ReadJob, number: int, material: Material, process: Process) -> P
         return Part(spec, material, process)
     from pipeline.meshsources import doubts
 
-    sheets = [(float(row.width), float(row.height)) for row in read.tables.stock]
-    return Part(spec, material, process, source.mesh, doubts(source, sheets))
+    sheets = [(sheet.width_mm, sheet.height_mm) for sheet in stock]
+    ended = all(not sheet.is_roll for sheet in stock)
+    return Part(spec, material, process, source.mesh, doubts(source, sheets if ended else ()))
 
 
 def _touching(read: ReadJob, number: int, part: Part) -> Part:
@@ -164,22 +180,6 @@ def _process(table: ProcessTable, thickness: float | None) -> tuple[Process, tup
 
 def _float(value: Fraction | None) -> float | None:
     return None if value is None else float(value)
-
-
-def _stock(tables: JobFile) -> tuple[Sheet, ...]:
-    return tuple(
-        Sheet(row.id, float(row.width), float(row.height), row.quantity, float(row.edge_gap), _float(row.price))
-        for row in tables.stock
-    )
-
-
-def _options(tables: JobFile) -> NestOptions:
-    nest = tables.nest
-    return NestOptions(float(nest.gap), _angles(nest.rotations), float(nest.time_limit), nest.seed)
-
-
-def _angles(rotations: Rotations) -> tuple[float, ...] | None:
-    return None if isinstance(rotations, str) else tuple(float(angle) for angle in rotations)
 
 
 def _tolerances(tables: JobFile) -> Tolerances:

@@ -10,19 +10,20 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 from msgspec import Meta, field
 
 from pipeline.decode import Complaint, Walk, decode
+from pipeline.dxftables import DxfTable, alone_troubles
 from pipeline.locate import Place, nearest, places
 from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, text_of
 from pipeline.paths import Path, written
 from pipeline.sources import Sources, Tell, silent
+from pipeline.stocktables import NestTable, StockTable, grain_troubles, other_material
 from pipeline.units import JOB_UNITS
 from stages.errors import BadInputError, Problem
 from stages.model.curves import Table, Trouble, negatives, not_positive
-from stages.model.cutfile import Flavour, Version
 from stages.model.ducts import is_set
 from stages.model.faces import FaceFile
 from stages.model.meshes import MeshFile, MeshNormals
@@ -34,9 +35,9 @@ if TYPE_CHECKING:
     from pipeline.cadfiles import CadSource
     from pipeline.meshsources import MeshSource
 
+T = TypeVar("T", bound=Table)
 DEFAULTS = Tolerances()
 Text = Annotated[str, Meta(max_length=200)]
-Rotations = Literal["free"] | tuple[Angle, ...]
 KRows = Annotated[tuple[tuple[Number, Number], ...], Meta(min_length=1)]
 
 
@@ -60,6 +61,7 @@ class MaterialTable(Table, frozen=True, kw_only=True):
     k_factor: distance of the neutral line from the inside face over the thickness: one value, "din6935", or rows
         [inside radius / thickness, K] with straight lines between; absent: 0.5, rolled work.
     yield_strength in MPa, youngs_modulus in GPa: for an estimate of springback.
+    grain: direction of rolling, of the line of tightness of leather, in degrees from x, of stock that states none.
     """
 
     name: Text = ""
@@ -70,6 +72,7 @@ class MaterialTable(Table, frozen=True, kw_only=True):
     k_factor: Literal["din6935"] | float | KRows | None = None
     yield_strength: Number | None = None
     youngs_modulus: Number | None = None
+    grain: Angle | None = None
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield values that no sheet has."""
@@ -103,51 +106,20 @@ class ProcessTable(Table, frozen=True, kw_only=True):
     """How the sheet is cut; min_hole, min_web: narrowest hole, least material between two cuts, if not the table's.
 
     kerf: width of the cut, for the report: contours are written as they are, without an offset.
+    speed: way of the cutter in a minute; pierce_time: seconds for each cut begun; both for the time in the cost table.
     """
 
     type: Literal["laser", "plasma", "waterjet", "oxy-fuel", "knife", "die"] | None = None
     kerf: Length | None = None
     min_hole: Length | None = None
     min_web: Length | None = None
+    speed: Length | None = None
+    pierce_time: Number | None = None
 
     def troubles(self) -> Iterator[Trouble]:
-        """Yield widths below nothing."""
-        yield from negatives(self, "kerf", "min_hole", "min_web")
-
-
-class StockTable(Table, frozen=True, kw_only=True):
-    """Rectangular sheets; quantity absent: as many as needed; price: of one sheet."""
-
-    id: Annotated[str, Meta(min_length=1, max_length=80)]
-    width: Length
-    height: Length
-    kind: Literal["sheet"] = "sheet"
-    quantity: Annotated[int, Meta(ge=1, le=100_000)] | None = None
-    edge_gap: Length = field(default_factory=Length)
-    price: Number | None = None
-
-    def troubles(self) -> Iterator[Trouble]:
-        """Yield sizes that are no sheet."""
-        yield from not_positive(self, "width", "height")
-        yield from negatives(self, "edge_gap", "price")
-        if self.edge_gap > 0 and 2 * self.edge_gap >= min(self.width, self.height):
-            yield Trouble("edge_gap", f"{float(self.edge_gap):g} mm leaves no room", "less than half the sheet")
-
-
-class NestTable(Table, frozen=True, kw_only=True):
-    """Wishes for the nest; gap: between nominal contours, kerf included; time_limit in seconds."""
-
-    gap: Length = field(default_factory=Length)
-    rotations: Rotations = "free"
-    time_limit: Number = field(default_factory=lambda: Number(10))
-    seed: Annotated[int, Meta(ge=0, le=2**31)] = 0
-
-    def troubles(self) -> Iterator[Trouble]:
-        """Yield a negative gap, no time, and an empty list of angles."""
-        yield from negatives(self, "gap")
-        yield from not_positive(self, "time_limit")
-        if not self.rotations:
-            yield Trouble("rotations", "no angle is allowed", 'list at least one, such as [0], or write "free"')
+        """Yield widths and times below nothing, and a cutter that stands still."""
+        yield from negatives(self, "kerf", "min_hole", "min_web", "pierce_time")
+        yield from not_positive(self, "speed")
 
 
 class ToleranceTable(Table, frozen=True, kw_only=True):
@@ -162,13 +134,6 @@ class ToleranceTable(Table, frozen=True, kw_only=True):
         """Yield tolerances that nothing can meet."""
         yield from not_positive(self, "chord")
         yield from negatives(self, "join")
-
-
-class DxfTable(Table, frozen=True, kw_only=True):
-    """How the drawings are written."""
-
-    flavour: Flavour = "polyline-arcs"
-    version: Version = "R2000"
 
 
 class ReportTable(Table, frozen=True, kw_only=True):
@@ -200,8 +165,14 @@ class JobFile(Table, frozen=True, kw_only=True):
     def troubles(self) -> Iterator[Trouble]:
         """Yield names that occur twice: they become file names, so upper and lower case are the same."""
         yield from repeated("part", "name", [part.name for part in self.part])
-        yield from repeated("stock", "id", [stock.id for stock in self.stock])
+        yield from repeated("stock", "id", [stock.name for stock in self.stock])
         yield from taken_by_blanks(self.part)
+        yield from grain_troubles(self.part, self.stock, self.material.grain)
+        yield from other_material(self.stock, self.material.name, self.material.thickness)
+        if self.nest.common_line and self.process.kerf is None and self.process.type is None:
+            hint = "give process.kerf or process.type: neighbours lie one kerf apart"
+            yield Trouble("nest.common_line", "the width of the cut is not known", hint)
+        yield from alone_troubles(self.dxf, common_line=self.nest.common_line)
         for i, part in enumerate(self.part):
             if part.face != "middle" and self.material.thickness is None:
                 hint = "give material.thickness: the neutral surface lies that far in the sheet"
@@ -253,6 +224,14 @@ class ReadJob:
 
 def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent) -> ReadJob:
     """Return the job; `BadInputError` with every problem, each with its place.  tell: is told what takes long."""
+    tables, sources, inputs = read_as(JobFile, file, settings, tell)
+    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched)
+
+
+def read_as(
+    wanted: type[T], file: FilePath, settings: Iterable[str] = (), tell: Tell = silent
+) -> tuple[T, Sources, tuple[tuple[str, str], ...]]:
+    """Return the tables of a file of that sort, what it points at, and name and sha256 of all of it."""
     content = read_bytes(file)
     text = text_of(content, file)
     raw = parse(text, file)
@@ -261,13 +240,12 @@ def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent) -> R
     sources = Sources(file.parent, walk.unit, tell=tell)
     walk.resolve = sources.resolve
     try:
-        tables = decode(walk, JobFile, raw)
+        tables = decode(walk, wanted, raw)
     except RecursionError:
         raise BadInputError(Problem(DEEP, file=str(file))) from None
     if tables is None:
         raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
-    inputs = ((file.name, sha256(content).hexdigest()), *sources.digests)
-    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched)
+    return tables, sources, ((file.name, sha256(content).hexdigest()), *sources.digests)
 
 
 def _unit(raw: dict[str, object]) -> str:

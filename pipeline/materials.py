@@ -68,6 +68,12 @@ def look_up(name: str) -> tuple[MaterialRow | None, tuple[str, ...]]:
     return None, (f'material "{name}" is not in the table: only the values given count{advice}',)
 
 
+def are_same(one: str, other: str) -> bool:
+    """Return whether two names mean one material: they are names of one row, or alike but for case and hyphens."""
+    rows = [look_up(name)[0] for name in (one, other)]
+    return _plain(one) == _plain(other) or (rows[0] is not None and rows[0] is rows[1])
+
+
 def _plain(name: str) -> str:
     return " ".join(name.casefold().replace("aluminum", "aluminium").replace("-", " ").split())
 

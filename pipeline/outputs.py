@@ -3,6 +3,8 @@
 from typing import TYPE_CHECKING
 
 from pipeline.files import drawings, file_names
+from pipeline.layouts import LAYOUT, layout_document
+from pipeline.remnants import REMNANTS, remnant_document
 from pipeline.report.document import Document, class_of, document, encoded
 from pipeline.report.lines import stage_line, trouble_lines
 from pipeline.run import JobResult, PartRun
@@ -16,7 +18,13 @@ def outputs(result: JobResult) -> tuple[Document, dict[str, bytes]]:
     """Return the report, and every file by its path below the output folder."""
     files = drawings(result)
     report = document(result, files)
-    return report, {REPORT: encoded(report), **files, **pictures(result)}
+    return report, {REPORT: encoded(report), **stored(result), **files, **pictures(result)}
+
+
+def stored(result: JobResult) -> dict[str, bytes]:
+    """Return what a later job may start from: the layout and what is left over."""
+    documents = {LAYOUT: layout_document(result), REMNANTS: remnant_document(result)}
+    return {name: encoded(content) for name, content in documents.items() if content is not None}
 
 
 def pictures(result: JobResult) -> dict[str, bytes]:
@@ -35,8 +43,7 @@ def pictures(result: JobResult) -> dict[str, bytes]:
             )
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
     for layout in result.nest.product.layouts if result.nest.product is not None else ():
-        name = names.drawing(layout).replace("cut/", "preview/").replace(".dxf", ".png")
-        drawn[name] = sheet_picture(layout, patterns)
+        drawn[names.picture(layout)] = sheet_picture(layout, patterns)
     return drawn
 
 

@@ -5,8 +5,8 @@ stage that raises `NoSolutionError` has fallen short, which is its report's fata
 the reports, which are functions of the job alone.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Generic, Literal, ParamSpec, TypeVar
 
@@ -135,21 +135,52 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
     Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
     """
     runner = Runner(listener)
-    parts = tuple(run for part in job.parts for run in run_set(runner, part, job))
-    patterns = [run.pattern for run in parts if run.pattern is not None]
+    return finish(runner, job, tuple(run for part in job.parts for run in run_set(runner, part, job)))
+
+
+def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...]) -> JobResult:
+    """Return what becomes of a job whose parts have got as far as they get: nested and written."""
+    patterns = cut_patterns(parts, job)
     nest: Step[Nesting] = skipped("nest", job.name)
     if job.stock and len(patterns) == len(parts):
-        from stages.nest import nest as nest_stage
-
-        nest = runner.step("nest", job.name, nest_stage, patterns, job.stock, job.options, job.tolerances)
+        nest = with_findings(nested(runner, patterns, job), job.repairs)
     write: Step[tuple[CutFile, ...]] = skipped("write", job.name)
     if patterns:
-        from stages.write import write as write_stage
+        from pipeline.certified import written
 
         names = file_names(parts, job)
         named = names.patterns(patterns)
-        write = runner.step("write", job.name, write_stage, named, names.nesting(nest.product), job.machine)
+        nesting = names.nesting(nest.product)
+        write = runner.step("write", job.name, written, named, nesting, names.machine, job.options)
     return JobResult(job, parts, nest, write, runner.seconds)
+
+
+def cut_patterns(parts: Sequence[PartRun], job: Job) -> "list[FlatPattern]":
+    """Return the patterns of all parts that passed, with the contours that the flavour of the drawings can hold."""
+    patterns = [run.pattern for run in parts if run.pattern is not None]
+    if not patterns:
+        return []
+    from stages.write.flavours import as_cut
+
+    return [as_cut(pattern, job.machine) for pattern in patterns]
+
+
+def with_findings(step: Step[T], findings: Sequence[Finding]) -> Step[T]:
+    """Return a step with what was found out before it."""
+    report = replace(step.report, findings=(*findings, *step.report.findings))
+    return replace(step, report=report) if findings else step
+
+
+def nested(runner: Runner, patterns: "Sequence[FlatPattern]", job: Job) -> "Step[Nesting]":
+    """Return the nest of all patterns, around the copies that a stored layout holds."""
+    from stages.nest import nest
+
+    if job.layout is None:
+        return runner.step("nest", job.name, nest, patterns, job.stock, job.options, job.tolerances)
+    from pipeline.layouts import placed
+
+    there = placed(job.layout, job.stock, patterns)
+    return runner.step("nest", job.name, nest, patterns, job.stock, job.options, job.tolerances, fixed=there)
 
 
 def run_set(runner: Runner, part: "Part", job: Job) -> "tuple[PartRun, ...]":

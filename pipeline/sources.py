@@ -2,7 +2,7 @@
 
 A drawing lies where the job file says, seen from the job file.  Its unit is that of its header ($INSUNITS); a drawing
 without a unit has that of the job, and that is noted.  Pieces whose ends meet become one curve (`pipeline.drawings`).
-An outline must be closed; the holes of a plate are all closed contours of their layer.
+An outline must be closed; the holes of a plate, and the defects of a sheet, are all closed contours of their layer.
 """
 
 from collections.abc import Callable
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from pipeline.decode import ResolveError, Several, suggestion
 from pipeline.paths import Path
+from pipeline.stocktables import LayersTable, StockTable
 from pipeline.units import UnreadableError
 from stages.model.curves import CurveSpec, Table
 from stages.model.faces import FaceFile
@@ -67,10 +68,12 @@ class Sources:
             self.touched.setdefault(_part(path), {})[table] = self._mesh(table)
         if isinstance(table, FaceFile):
             self._read_faces(table, path)
+        if isinstance(table, StockTable) and table.file is not None:
+            return Several(_sound(self._stock(table, table.file)))
         if not isinstance(table, CurveSpec) or table.file is None:
             return table
         curves, key = self._curves(table.file, table.layer), "layer" if table.layer else "file"
-        if path[-2:-1] == ("holes",) or path[-1:] == ("holes",):
+        if {"holes", "defects"} & {*path[-2:]}:
             _all_closed(curves, key)
             return Several(tuple(curve.spec() for curve in curves))
         if len(curves) != 1:
@@ -102,6 +105,47 @@ class Sources:
         if (table.file, source.digest) not in self.digests:
             self.digests.append((table.file, source.digest))
         self.faces.update({number: source for number in path if isinstance(number, int)})
+
+    def _stock(self, row: StockTable, name: str) -> tuple[StockTable, ...]:
+        """Return the pieces of stock of a drawing or of a JSON file."""
+        from pipeline import stockfiles
+
+        if name.casefold().endswith(".json"):
+            from pipeline.stockjson import rows_of_json
+
+            if row.layers is not None:
+                raise ResolveError("layers", f"{name} has no layers", "leave them out")
+            blank = stockfiles.plain_row(row, stockfiles.stem_of(name))
+            return rows_of_json(row, blank, self._content(name), self.unit)
+        if row.entry is not None:
+            raise ResolveError("entry", f"the pieces of {name} have no names", "leave it out: all are taken")
+        layers = row.layers or LayersTable()
+        present = {str(entity.dxf.layer) for entity in self._drawing(name).modelspace()}
+        used = stockfiles.used_layers(layers, present)
+        unused = sorted(present - {*used})
+        if unused:
+            self.notes.append(f"{name}: nothing is read from the layers {', '.join(unused)}")
+        try:
+            curves = {layer: self._curves(name, layer) for layer in used}
+        except ResolveError as error:
+            raise ResolveError("file", error.message, error.hint) from None
+        return stockfiles.rows_of_drawing(row, curves)
+
+    def _content(self, name: str) -> bytes:
+        """Return the bytes of a file, their sha256 noted."""
+        file = self.folder / name
+        try:
+            content = file.read_bytes()
+        except FileNotFoundError:
+            raise ResolveError("file", f"there is no file {name}", f"looked for {file}") from None
+        except OSError as error:
+            raise ResolveError("file", f"{name} cannot be read: {error.strerror}", "") from None
+        if len(content) > LARGEST_DRAWING:
+            raise ResolveError("file", f"{name} is larger than {LARGEST_DRAWING // 10**6} MB", "is this stock?")
+        said = name, sha256(content).hexdigest()
+        if said not in self.digests:
+            self.digests.append(said)
+        return content
 
     def _curves(self, name: str, layer: str | None) -> "list[Piece]":
         """Return all curves of a layer, or of the whole model space."""
@@ -138,6 +182,20 @@ class Sources:
             known = ", ".join(f"{number} = {unit}" for number, unit in UNIT_OF_CODE.items())
             raise ResolveError("file", f"{name} has the unit $INSUNITS = {code}", f"units read here: {known}")
         return UNIT_OF_CODE[code]
+
+
+def _sound(rows: tuple[StockTable, ...]) -> tuple[StockTable, ...]:
+    """Return the pieces of stock of a file; refuse what breaks the rules of a stock."""
+    wrong = [(row.name, trouble) for row in rows for trouble in row.troubles()]
+    if wrong:
+        told = (f'"{name}" {trouble.key}: {trouble.message}' for name, trouble in wrong[:MOST_WRONG])
+        more = f"; and {len(wrong) - MOST_WRONG} more" if len(wrong) > MOST_WRONG else ""
+        raise ResolveError("file", "; ".join(told) + more, wrong[0][1].hint)
+    return rows
+
+
+MOST_WRONG = 5
+"""Faults of the stock in one file that are told."""
 
 
 def _part(path: Path) -> int:

@@ -20,7 +20,11 @@ from stages.errors import BadInputError, Problem
 
 REPORT = "report.json"
 REPORT_SCHEMA = "planish-report/"
-OURS = frozenset({REPORT, "cut", "flat", "preview", "report.html", "traveller.pdf", "results.csv", "junit.xml"})
+POOL_SCHEMA = "planish-pool/"
+OURS = frozenset({
+    REPORT, "cut", "flat", "preview", "layout.json", "remnant.json", "remnants", "report.html", "traveller.pdf",
+    "results.csv", "junit.xml",
+})  # fmt: skip
 """What an output folder may hold at its top."""
 HARMLESS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave behind without being asked."""
@@ -70,19 +74,26 @@ def refuse_foreign(out: Path, keep: Iterable[Path] = ()) -> None:
     if not out.is_dir():
         raise BadInputError(Problem("the output folder is a file", hint=hint, file=str(out)))
     entries = {entry.name for entry in out.iterdir()} - HARMLESS
-    strangers = sorted(entries - OURS)
-    if entries and (strangers or not _is_report(out / REPORT)):
+    ours = _written(out / REPORT)
+    strangers = sorted(entries - (OURS if ours is None else ours))
+    if entries and (strangers or ours is None):
         what = f"holds {strangers[0]}, which planish did not write" if strangers else "is no output folder of planish"
         raise BadInputError(Problem(what, hint=f"it would be lost; {hint}", file=str(out)))
 
 
-def _is_report(file: Path) -> bool:
-    """Return whether a file is a report of planish."""
+def _written(file: Path) -> frozenset[str] | None:
+    """Return what may lie beside a report of planish, the folders of its groups included; None: it is none."""
     try:
         content = json.loads(file.read_bytes())
     except (OSError, ValueError, RecursionError):
-        return False
-    return isinstance(content, dict) and str(content.get("schema")).startswith(REPORT_SCHEMA)
+        return None
+    schema = str(content.get("schema")) if isinstance(content, dict) else ""
+    if schema.startswith(REPORT_SCHEMA):
+        return OURS
+    groups = content.get("groups") if schema.startswith(POOL_SCHEMA) else None
+    if not isinstance(groups, list):
+        return None
+    return frozenset({REPORT, *(str(group.get("name")) for group in groups if isinstance(group, dict))})
 
 
 @contextmanager

@@ -14,6 +14,7 @@ PICTURES = {
     "cladding": ("fascia", "handrail-band"),
     "ducts": ("transition", "galvanised-1"),
     "guard": ("hood",),
+    "hides": ("right-1",),
     "hopper": ("offset-cone", "plate-1"),
     "paper": ("example-2",),
     "strakes": ("bilge", "hood", "aluminium-1"),

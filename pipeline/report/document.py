@@ -16,10 +16,15 @@ from typing import TYPE_CHECKING
 from pipeline import __version__
 from pipeline.files import FileNames, file_names
 from pipeline.job import Job
+from pipeline.layouts import engine_of
 from pipeline.provenance import environment, provenance
+from pipeline.report.costs import costs_entry, cuts_of_sheets, job_costs
 from pipeline.report.figures import Figures, figures, total
+from pipeline.report.nestentries import options_entry, stock_entry, wish_entry
+from pipeline.report.stockfigures import stock_figures
 from pipeline.run import JobResult, PartRun, Step
 from pipeline.store import digest
+from stages.model.cutfile import Machine
 from stages.model.report import Finding, Metric
 
 if TYPE_CHECKING:
@@ -34,29 +39,45 @@ CONTENTS = ("class", "surface", "flat")
 
 def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
     """Return the report of a job whose drawings are `files`, by their paths."""
-    names = file_names(result.parts, result.job)
-    measures = {run.part.name: _measured(run, run.pattern) for run in result.parts if run.pattern is not None}
+    measures = measured(result)
     return {
         "schema": SCHEMA,
         "status": result.status,
         "job": _job(result.job),
         "provenance": provenance(result.job.digest, result.job.limits),
         "parts": [_part(run, measures.get(run.part.name)) for run in result.parts],
-        "nest": {
-            **_step(result.nest),
-            "sheets": [_sheet(layout, measures, names) for layout in _layouts(result)],
-        },
-        "write": {
-            **_step(result.write),
-            "status": _write_status(result),
-            "files": [{"path": path, "sha256": digest(content)} for path, content in files.items()],
-        },
+        "nest": nest_entry(result, measures),
+        "write": write_entry(result, files),
         "run": {
             "version": __version__,
             "seconds": dict(result.seconds),
             "inputs": [{"name": name, "sha256": found} for name, found in result.job.inputs],
             "environment": environment(name for name, _ in result.job.inputs),
         },
+    }
+
+
+def nest_entry(result: JobResult, measures: Mapping[str, Figures]) -> Document:
+    """Return the nest of a report.  measures: of the parts, by their names."""
+    names = file_names(result.parts, result.job)
+    patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
+    return {
+        **_step(result.nest),
+        **_basis(result),
+        "sheets": [
+            {**_sheet(layout, patterns, measures, names), **cuts}
+            for layout, cuts in zip(_layouts(result), _shared_cuts(result, names), strict=True)
+        ],
+        **_costs(result),
+    }
+
+
+def write_entry(result: JobResult, files: Mapping[str, bytes]) -> Document:
+    """Return what a report says of the drawings, `files` by their paths."""
+    return {
+        **_step(result.write),
+        "status": _write_status(result),
+        "files": [{"path": path, "sha256": digest(content)} for path, content in files.items()],
     }
 
 
@@ -80,11 +101,15 @@ def plain(value: object) -> object:
     return number if math.isfinite(number) else None
 
 
-def _measured(run: PartRun, pattern: "FlatPattern") -> Figures:
-    """Return the figures of a part: of what is left when its holes and notches have been cut."""
+def measured(result: JobResult) -> dict[str, Figures]:
+    """Return the figures of the parts that passed: of what is left when holes and notches have been cut."""
     from stages.geometry.contours import area
 
-    return figures(pattern, sum(area(contour.edges) for contour in (pattern.outer, *pattern.inner)))
+    patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
+    return {
+        name: figures(pattern, sum(area(contour.edges) for contour in (pattern.outer, *pattern.inner)))
+        for name, pattern in patterns.items()
+    }
 
 
 def _detail(run: PartRun) -> dict[str, object]:
@@ -119,8 +144,38 @@ def _job(job: Job) -> Document:
             "join_mm": tol.join_mm,
             "normalise": tol.normalise,
         },
+        "dxf": _drawings(job.machine),
         "notes": list(job.notes),
     }
+
+
+def _drawings(machine: Machine) -> Document:
+    """Return how the drawings are written, and how they call their layers."""
+    return {
+        "flavour": machine.flavour,
+        "version": machine.version,
+        "layers": {meaning: {"name": layer.name, "colour": layer.colour} for meaning, layer in machine.layers.items()},
+        "text": machine.text,
+        "one_file_per": machine.file_per,
+        "name": machine.file_name,
+    }
+
+
+def _basis(result: JobResult) -> Document:
+    """Return who placed the copies, on which stock and with which wishes; nothing without stock."""
+    if not result.job.stock:
+        return {}
+    return {
+        "engine": engine_of(result),
+        "options": options_entry(result.job.options),
+        "stock": [stock_entry(sheet) for sheet in result.job.stock],
+    }
+
+
+def _costs(result: JobResult) -> Document:
+    """Return the cost table of what was nested."""
+    made = job_costs(result)
+    return {} if made is None else {"cost": costs_entry(made)}
 
 
 def _part(run: PartRun, measured: Figures | None) -> Document:
@@ -132,7 +187,8 @@ def _part(run: PartRun, measured: Figures | None) -> Document:
         "class": class_of(run),
         "flat": detail.get("flat") if passed else None,
         "surface": _surface(detail) if passed else None,
-        **_figures(measured),
+        **figures_entry(measured),
+        "nest": None if run.pattern is None else wish_entry(run.pattern),
         "stages": [{"stage": step.report.stage, **_step(step)} for step in run.steps],
     }
 
@@ -150,7 +206,8 @@ def class_of(run: PartRun) -> str:
     return "rejected" if run.pattern is None else str(_detail(run)["class"])
 
 
-def _figures(measured: Figures | None) -> Document:
+def figures_entry(measured: Figures | None) -> Document:
+    """Return mass, length of cut and pierces, null for what is not known."""
     if measured is None:
         return {"mass_kg": None, "cut_length_mm": None, "pierces": None}
     return {"mass_kg": measured.mass_kg, "cut_length_mm": measured.cut_length_mm, "pierces": measured.pierces}
@@ -191,17 +248,27 @@ def _write_status(result: JobResult) -> str:
     return "skipped" if result.write.status == "pass" and result.nest.product is None else result.write.status
 
 
-def _sheet(layout: "SheetLayout", measures: Mapping[str, Figures], names: FileNames) -> Document:
+def _sheet(
+    layout: "SheetLayout", patterns: "Mapping[str, FlatPattern]", measures: Mapping[str, Figures], names: FileNames
+) -> Document:
     parts = total([measures[placed.part] for placed in layout.placements])
     return {
         "stock": layout.sheet.id,
         "index": layout.index,
         "utilisation": layout.utilisation,
         "file": names.drawing(layout),
-        **_figures(parts),
-        "cost": layout.sheet.price,
+        **figures_entry(parts),
+        **stock_figures(layout, patterns),
         "placements": [_placement(placed) for placed in layout.placements],
     }
+
+
+def _shared_cuts(result: JobResult, names: FileNames) -> list[Document]:
+    """Return what cutting each sheet takes where parts share cuts, as its file reads; nothing where they do not."""
+    if not result.job.options.common_line:
+        return [{} for _ in _layouts(result)]
+    found = cuts_of_sheets(result.write.report, _layouts(result), names)
+    return [{"cut_length_mm": cuts.length_mm, "pierces": cuts.pierces} for cuts in found]
 
 
 def _placement(placed: "Placement") -> Document:

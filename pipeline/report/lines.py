@@ -15,7 +15,10 @@ SHOWN: dict[str, tuple[tuple[str, str], ...]] = {
         ("mesh_noise", "noise"), ("max_gaussian_curvature", "K D2"), ("min_bend_radius_mm", "R min"),
     ),
     "unroll": (("length_error", "length error"), ("area_error", "area error"), ("metric_error", "metric error")),
-    "nest": (("utilisation", "utilisation"), ("min_gap_mm", "gap"), ("min_edge_gap_mm", "edge gap")),
+    "nest": (
+        ("utilisation", "utilisation"), ("min_gap_mm", "gap"), ("min_edge_gap_mm", "edge gap"),
+        ("common_line_mm", "common lines"), ("travel_mm", "travel"),
+    ),
     "write": (("max_deviation_mm", "deviation"), ("closure_gap_mm", "closure"), ("entities", "entities")),
 }  # fmt: skip
 """The metrics of each stage that are shown, and what they are called."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.report.pictures_branched import as_mesh
 from pipeline.report.pictures_canvas import (
     GREY,
     INK,
@@ -36,7 +37,7 @@ from pipeline.report.pictures_strain import draw_scale, strain_colours
 from pipeline.report.pictures_surface import MARGINS, draw_surface, sight
 from stages.geometry.meshflat import MeshMap
 from stages.model.pattern import FlatPattern
-from stages.model.surface import MeshSurface, Plate, RuledSurface, Surface
+from stages.model.surface import BranchedSurface, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import STRAIN_LIMIT, Class
 
 __all__ = ["part_picture", "sheet_picture"]
@@ -55,6 +56,9 @@ COLUMN = 4.3
 SPLITS = (0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6)
 TURNED_WORTH, STACKED_WORTH = 0.85, 0.95
 """What a turned pattern and a stack are worth beside an unturned one in a row: they must show more to be chosen."""
+
+Shown = RuledSurface | Plate | MeshSurface
+"""What is drawn: a part of several faces as triangles."""
 
 
 def part_picture(
@@ -76,16 +80,17 @@ def part_picture(
     """
     with own_settings():
         canvas = Canvas(WIDTH, HEIGHT)
-        _title(canvas, surface, pattern, reached)
+        shown = as_mesh(surface) if isinstance(surface, BranchedSurface) else surface
+        _title(canvas, shown, pattern, reached)
         if pattern is None:
-            _rejected(canvas, surface, notes, worst_v)
+            _rejected(canvas, shown, notes, worst_v)
         else:
             strained = None if flat is None or reached not in STRAINED else (flat, STRAIN_LIMIT[STRAINED[reached]])
-            _accepted(canvas, surface, pattern, notes, worst_v, strained=strained)
+            _accepted(canvas, shown, pattern, notes, worst_v, strained=strained)
         return canvas.png()
 
 
-def _title(canvas: Canvas, surface: Surface, pattern: FlatPattern | None, reached: str | None) -> None:
+def _title(canvas: Canvas, surface: Shown, pattern: FlatPattern | None, reached: str | None) -> None:
     spec = surface.part.spec
     canvas.text((MARGIN, HEIGHT - 0.33), shortened(spec.name, TITLE_SIGNS), 15.0, align=("left", "center"), bold=True)
     material = surface.part.material
@@ -114,7 +119,7 @@ STRAINED: dict[str, Class] = {"metal": "metal", "leather": "leather"}
 
 def _accepted(
     canvas: Canvas,
-    surface: Surface,
+    surface: Shown,
     pattern: FlatPattern,
     notes: Sequence[str],
     worst_v: float | None,
@@ -191,7 +196,7 @@ def _shown_length(room: Box, extent: tuple[float, float]) -> float:
     return scale * max(extent)
 
 
-def _rejected(canvas: Canvas, surface: Surface, notes: Sequence[str], worst_v: float | None) -> None:
+def _rejected(canvas: Canvas, surface: Shown, notes: Sequence[str], worst_v: float | None) -> None:
     """Draw the formed surface, and the reasons in a column on the right."""
     left = WIDTH - MARGIN - COLUMN
     box = Box(MARGIN, MARGIN, left - 0.15, HEIGHT - HEAD - 0.05)

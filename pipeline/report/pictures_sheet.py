@@ -1,12 +1,11 @@
-"""A nested sheet as it will be cut: parts with their names, edge gap, utilisation, and what is left over.
+"""A nested sheet as it will be cut: parts with their names, the stock under them, utilisation, and what is left over.
 
 Each part name has a colour; a label is written along the direction in which the part has most room, and left out
-where it could not be read (the table on the right names every colour).  The offcut is the straight strip beyond the
-last part, to the right or above, whichever is larger; gaps are not taken off it.
+where it could not be read (the table on the right names every colour).  A copy that was turned over has a sign beside
+its number.  The stock itself is drawn by `pictures_stock`.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from pipeline.report.pictures_canvas import (
     PALE,
     POINTS_PER_INCH,
     PURPLE,
+    TINY_MM,
     Box,
     Canvas,
     Fit,
@@ -27,13 +27,14 @@ from pipeline.report.pictures_canvas import (
     shortened,
 )
 from pipeline.report.pictures_edges import corner_points
-from pipeline.report.pictures_flat import closed_polygon, compound, dimension
+from pipeline.report.pictures_flat import closed_polygon, compound
 from pipeline.report.pictures_flat_names import upright
 from pipeline.report.pictures_marks import mark_points
+from pipeline.report.pictures_stock import draw_edges, draw_grain, draw_ground, draw_legend, frame_of
 from stages.geometry.arrays import Array, Points2, Vector2, cross2
 from stages.geometry.rigid import Rigid2, apply, matrix
 from stages.model.pattern import FlatPattern
-from stages.model.sheet import Placement, SheetLayout
+from stages.model.sheet import Placement, Rectangle, SheetLayout
 
 FILLS = (
     "#BBD9EC", "#F6D7A8", "#BFE3D6", "#EBCFE0", "#F7F0A6", "#F3C2A5", "#D3D3D3", "#D2E9F8",
@@ -57,10 +58,9 @@ DIRECTIONS_DEG = tuple(range(0, 180, 15))
 UPRIGHT_BONUS = 1.2
 """What a label that lies level on the sheet is worth beside the size of its type."""
 
-LEAST_OFFCUT = 0.02
-"""A strip narrower than this share of the sheet is not worth a note."""
-
 FREE_FILL = "#F4F4F4"
+MIRRORED = "\u21c4"
+"""Two arrows, there and back: a copy that was turned over."""
 
 
 def sheet_picture(layout: SheetLayout, patterns: Mapping[str, FlatPattern]) -> bytes:
@@ -69,59 +69,48 @@ def sheet_picture(layout: SheetLayout, patterns: Mapping[str, FlatPattern]) -> b
         return _drawn(layout, patterns).png()
 
 
-def page_height(layout: SheetLayout) -> float:
-    """Return the height of the page on which the sheet has the full width, within limits, inches."""
+def page_height(wide: float, tall: float) -> float:
+    """Return the height of the page on which a sheet of that size has the full width, within limits, inches."""
     room = WIDTH - 2.0 * MARGIN - TABLE - AROUND[0] - AROUND[2]
-    wanted = room * layout.sheet.height_mm / layout.sheet.width_mm + HEAD + MARGIN + AROUND[1] + AROUND[3]
+    wanted = room * tall / max(wide, TINY_MM) + HEAD + MARGIN + AROUND[1] + AROUND[3]
     return round(float(np.clip(wanted, LEAST_HEIGHT, MOST_HEIGHT)), 1)
 
 
 def _drawn(layout: SheetLayout, patterns: Mapping[str, FlatPattern]) -> Canvas:
-    sheet, height = layout.sheet, page_height(layout)
+    frame = frame_of(layout, patterns)
+    height = page_height(*(frame[1] - frame[0]).tolist())
     canvas = Canvas(WIDTH, height)
     box = Box(MARGIN, MARGIN / 2.0, WIDTH - MARGIN - TABLE, height - HEAD)
-    fit = fitted(np.array([[0.0, 0.0], [sheet.width_mm, sheet.height_mm]]), box.inset(*AROUND))
+    fit = fitted(frame, box.inset(*AROUND))
     names = list(dict.fromkeys(placed.part for placed in layout.placements))
     fills = {name: FILLS[i % len(FILLS)] for i, name in enumerate(names)}
-    _title(canvas, layout, height)
-    free = offcut(layout, patterns)
-    if free is not None:
-        _free(canvas, free, fit)
-    _sheet(canvas, layout, fit)
+    _title(canvas, layout, frame, height)
+    draw_ground(canvas, layout.sheet, frame, fit)
+    if layout.offcut is not None:
+        _free(canvas, layout.offcut, fit)
     for name, fill in fills.items():
         copies = [placed for placed in layout.placements if placed.part == name]
         _copies(canvas, copies, patterns[name], fill, fit)
-    _table(canvas, layout, patterns, fills, Box(box.right + 0.1, box.bottom, WIDTH - MARGIN, box.top))
+    draw_edges(canvas, layout.sheet, frame, fit)
+    rest = draw_legend(canvas, layout.sheet, Box(box.right + 0.1, box.bottom, WIDTH - MARGIN, box.top))
+    _table(canvas, layout, patterns, fills, rest)
+    draw_grain(canvas, layout.sheet, box.left + AROUND[0], box.bottom)
     scale_bar(canvas, box.right - AROUND[2], box.bottom + 0.1, fit.scale, 1.6)
     return canvas
 
 
-def _title(canvas: Canvas, layout: SheetLayout, height: float) -> None:
+def _title(canvas: Canvas, layout: SheetLayout, frame: Points2, height: float) -> None:
     sheet, copies = layout.sheet, len(layout.placements)
-    canvas.text(
-        (MARGIN, height - 0.33), f"{shortened(sheet.id, 60)}   sheet {layout.index}", 15.0, INK, LEFT, bold=True
-    )
+    words = f"{shortened(sheet.id, 60)}   {sheet.kind} {layout.index}"
+    canvas.text((MARGIN, height - 0.33), words, 15.0, INK, LEFT, bold=True)
+    wide, tall = (frame[1] - frame[0]).tolist()
     facts = [
-        f"{length_text(sheet.width_mm)} \u00d7 {length_text(sheet.height_mm)} mm",
+        f"{length_text(wide)} \u00d7 {length_text(tall)} mm{' used' if sheet.is_roll else ''}",
         f"{copies} piece{'s' * (copies != 1)}",
         f"utilisation {100.0 * layout.utilisation:.1f} %",
         f"edge gap {sheet.edge_gap_mm:g} mm",
     ]
     canvas.text((MARGIN, height - 0.62), "   |   ".join(facts), 10.0, INK, LEFT)
-
-
-def _sheet(canvas: Canvas, layout: SheetLayout, fit: Fit) -> None:
-    """Draw the sheet, its gap and its dimensions."""
-    sheet, gap = layout.sheet, layout.sheet.edge_gap_mm
-    canvas.lines([rectangle(0.0, 0.0, sheet.width_mm, sheet.height_mm, fit)], INK, 1.6)
-    if 0.0 < gap < min(sheet.width_mm, sheet.height_mm) / 2.0:
-        inner = rectangle(gap, gap, sheet.width_mm - gap, sheet.height_mm - gap, fit)
-        canvas.lines([inner], GREY, 0.7, (4.0, 3.0))
-    low, high = fit.place(np.array([[0.0, 0.0], [sheet.width_mm, sheet.height_mm]]))
-    below, left = np.array([0.0, 0.32]), np.array([0.32, 0.0])
-    ends = np.array([high[0], low[1]]), np.array([low[0], high[1]])
-    dimension(canvas, low - below, ends[0] - below, below, f"{length_text(sheet.width_mm)} mm")
-    dimension(canvas, low - left, ends[1] - left, left, f"{length_text(sheet.height_mm)} mm")
 
 
 def rectangle(low_x: float, low_y: float, high_x: float, high_y: float, fit: Fit) -> Points2:
@@ -130,41 +119,12 @@ def rectangle(low_x: float, low_y: float, high_x: float, high_y: float, fit: Fit
     return fit.place(np.array(corners))
 
 
-@dataclass(frozen=True, slots=True)
-class Free:
-    """A straight strip of the sheet that no part reaches, mm."""
-
-    low_x: float
-    low_y: float
-    high_x: float
-    high_y: float
-
-
-def offcut(layout: SheetLayout, patterns: Mapping[str, FlatPattern]) -> Free | None:
-    """Return the larger of the strips to the right of all parts and above them; None if neither is worth a note."""
-    sheet = layout.sheet
-    reach = [extent(placed.motion, patterns[placed.part]) for placed in layout.placements]
-    x = max((float(high[0]) for high in reach), default=0.0)
-    y = max((float(high[1]) for high in reach), default=0.0)
-    strips = [Free(x, 0.0, sheet.width_mm, sheet.height_mm), Free(0.0, y, sheet.width_mm, sheet.height_mm)]
-    shares = [(sheet.width_mm - x) / sheet.width_mm, (sheet.height_mm - y) / sheet.height_mm]
-    best = int(np.argmax(shares))
-    return strips[best] if shares[best] >= LEAST_OFFCUT else None
-
-
-def extent(motion: Rigid2, pattern: FlatPattern) -> Vector2:
-    """Return how far a placed part reaches to the right and upward on its sheet, mm; exact."""
-    from stages.geometry import arcpath
-
-    _, _, high_x, high_y = arcpath.bounds(arcpath.transform(pattern.outer.path, motion))
-    return np.array([high_x, high_y])
-
-
-def _free(canvas: Canvas, free: Free, fit: Fit) -> None:
-    corners = rectangle(free.low_x, free.low_y, free.high_x, free.high_y, fit)
+def _free(canvas: Canvas, free: Rectangle, fit: Fit) -> None:
+    """Draw what is left over."""
+    wide, tall = free.width_mm, free.height_mm
+    corners = rectangle(free.x, free.y, free.x + wide, free.y + tall, fit)
     canvas.polygons([corners[:-1]], FREE_FILL)
     canvas.lines([corners], PALE, 0.8, (1.5, 2.0))
-    wide, tall = free.high_x - free.low_x, free.high_y - free.low_y
     words = f"free  {length_text(wide)} \u00d7 {length_text(tall)} mm"
     span = np.abs(corners[2] - corners[0])
     level = span[0] >= min(span[1], FREE_TEXT)
@@ -206,7 +166,8 @@ def _label(
 ) -> None:
     """Write name and number of the copy, or the number alone, where it can be read."""
     at = fit.place(apply(placed.motion, np.array([pattern.label_at])))[0]
-    for words in (f"{shortened(placed.part, LABEL_SIGNS)} #{placed.copy}", f"{placed.copy}"):
+    number = f"{placed.copy}{MIRRORED if placed.motion.mirrored else ''}"
+    for words in (f"{shortened(placed.part, LABEL_SIGNS)} #{number}", number):
         found = [
             (_type_size(words, room, fit.scale), _shown_angle(placed.motion, angle)) for angle, room in rooms.items()
         ]
@@ -263,11 +224,19 @@ def _table(
         y = top - (i + 0.5) * TABLE_ROW
         swatch = np.array([[0.0, -0.1], [0.22, -0.1], [0.22, 0.1], [0.0, 0.1]]) + np.array([box.left, y])
         canvas.polygons([swatch], fill, INK, 0.6)
-        count = sum(placed.part == name for placed in layout.placements)
+        count, mirrored = _counts(layout, name)
         wide, tall = np.diff(corner_points(patterns[name]), axis=0)[0].tolist()
-        canvas.text((box.left + 0.32, y + 0.075), f"{count} \u00d7 {shortened(name, TABLE_SIGNS)}", 8.5, INK, LEFT)
+        words = f"{count} \u00d7 {shortened(name, TABLE_SIGNS)}{mirrored}"
+        canvas.text((box.left + 0.32, y + 0.075), words, 8.5, INK, LEFT)
         size = f"{length_text(wide)} \u00d7 {length_text(tall)} mm"
         canvas.text((box.left + 0.32, y - 0.075), size, 7.5, GREY, LEFT)
     if len(shown) < len(fills):
         y = top - (len(shown) + 0.5) * TABLE_ROW
         canvas.text((box.left, y), f"and {len(fills) - len(shown)} more parts", 8.5, GREY, LEFT)
+
+
+def _counts(layout: SheetLayout, name: str) -> tuple[int, str]:
+    """Return how many copies of a part lie on the sheet, and how many of them are turned over, in signs."""
+    copies = [placed for placed in layout.placements if placed.part == name]
+    over = sum(placed.motion.mirrored for placed in copies)
+    return len(copies), f"  ({over} {MIRRORED})" if over else ""

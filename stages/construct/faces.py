@@ -4,16 +4,19 @@ A face that is not ruled (a sphere, a torus, a freeform surface) is refused with
 developable goes on to `verify` like any other surface.  Faces that go over into each other make one strip.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from stages.construct.curves import even, plane_axes
+from stages.construct.faces_based import reached
+from stages.construct.faces_blanks import blanks_of
+from stages.construct.faces_branched import branched
 from stages.construct.faces_chain import Joined, joined
-from stages.construct.faces_joined import blanks_of
-from stages.construct.faces_ruled import Rails, parallel, ruled_form
-from stages.construct.faces_strip import NoSeamError, strip_of
+from stages.construct.faces_closed import opened
+from stages.construct.faces_ruled import Rails, ruled_form
+from stages.construct.faces_seams import SEAM_NUMBER
+from stages.construct.faces_strip import NoSeamError
 from stages.construct.faces_trim import OpenLoopError, loops_of
 from stages.construct.features import placed
 from stages.construct.joins import join_metrics, join_rows, joins_of
@@ -50,8 +53,23 @@ def body_of(part: Part) -> CadBody:
 def face_surface(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
     """Return the surface of one blank of CAD faces, or None with the reason."""
     body = body_of(part)
+    try:
+        return _surface(part, body, tol)
+    except NoSeamError:
+        message = f"the edges of {_all_called(body)} go all the way round and leave no seam to cut it along"
+        hint = "split the face along a straight line in the CAD program"
+        return _refused(part, Finding("no-seam", f"{message}: {hint}", True, {"face": body.faces[0].index}))
+    except OpenLoopError as error:
+        message = f"an edge loop of {_all_called(body)} does not close: {error.gap_mm:.4g} mm are missing"
+        return _refused(part, Finding("open-contour", message, True, {"face": body.faces[0].index}))
+
+
+def _surface(part: Part, body: CadBody, tol: Tolerances) -> Outcome[Surface | None]:
+    """Return the surface of one blank.  Raises NoSeamError and OpenLoopError."""
+    if body.joints:
+        return branched(part, body, tol)
     if len(body.faces) > 1:
-        return _strip(part, body.faces, lambda: joined(body), tol)
+        return _strip(part, body.faces, joined(body), tol)
     (face,) = body.faces
     form = ruled_form(face.surface)
     if form is None:
@@ -60,7 +78,22 @@ def face_surface(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
         return _refused(part, Finding("no-edges", f"{called(face)} has no edges", True, {"face": face.index}))
     if isinstance(form, CadPlane):
         return _plate(part, face, tol)
-    return _strip(part, body.faces, lambda: cut_out(face, form), tol)
+    cut, form = opened(face, form)
+    remarks = (*part.remarks, *([] if cut is face else [_seam_told(cut)]))
+    return _strip(replace(part, remarks=remarks), (cut,), cut_out(cut, form), tol)
+
+
+def _seam_told(face: CadFace) -> Finding:
+    """Say where a face without a seam is cut open."""
+    seam = next(edge for edge in face.loops[0] if edge.number == SEAM_NUMBER)
+    a, b = seam.curves[0].jet(np.array([0.0, 1.0]), 0)[0]
+    places = " to ".join(f"({x:.6g}, {y:.6g}, {z:.6g})" for x, y, z in (a, b))
+    message = f"{called(face)} goes all the way round without a seam: it is cut open from {places} mm"
+    return Finding("seam-added", message, False, {"face": face.index})
+
+
+def _all_called(body: CadBody) -> str:
+    return " and ".join(called(face) for face in body.faces)
 
 
 def called(face: CadFace) -> str:
@@ -97,28 +130,12 @@ def cut_out(face: CadFace, form: CadSweep | CadCone | Rails) -> Joined:
 
     Raises NoSeamError, OpenLoopError, and NoSolutionError where Newton's method fails.
     """
-    patches = strip_of(form, face)
-    loops = loops_of(patches, face)
-    level = parallel(form) if isinstance(form, Rails) else form
-    if level is form or loops.trim(patches) is None:
-        return Joined(patches, loops, (0, len(patches)))
-    return cut_out(face, level)
+    patches = reached(face, form)
+    return Joined(patches, loops_of(patches, face), (0, len(patches)))
 
 
-def _strip(
-    part: Part, faces: tuple[CadFace, ...], cut_out_: Callable[[], Joined], tol: Tolerances
-) -> Outcome[Surface | None]:
+def _strip(part: Part, faces: tuple[CadFace, ...], cut: Joined, tol: Tolerances) -> Outcome[Surface | None]:
     """Return ruled faces as a strip."""
-    where = " and ".join(called(face) for face in faces)
-    try:
-        cut = cut_out_()
-    except NoSeamError:
-        message = f"the edges of {where} go all the way round and leave no seam to cut it along"
-        hint = "split the face along a straight line in the CAD program"
-        return _refused(part, Finding("no-seam", f"{message}: {hint}", True, {"face": faces[0].index}))
-    except OpenLoopError as error:
-        message = f"an edge loop of {where} does not close: {error.gap_mm:.4g} mm are missing"
-        return _refused(part, Finding("open-contour", message, True, {"face": faces[0].index}))
     size, patches = size_of(cut.patches), cut.patches
     joins = joins_of(patches)
     planar, proved = is_planar(patches)

@@ -75,12 +75,12 @@ def _patches(face: CadFace, d: Vector3, reach: Reach) -> tuple[RuledPatch, ...]:
     if side is None:
         raise ValueError(f"face {face.index} was joined and has no parallel rulings")
     if isinstance(side.form, CadPlane):
-        return (_rectangle(face, d, reach),)
+        return (rectangle(face, d, reach),)
     made = swept(CadSweep(side.form.profile, d), face, reach)
     return made if faces_out(made, face) else tuple(reversed_patch(patch) for patch in made[::-1])
 
 
-def _rectangle(face: CadFace, d: Vector3, reach: Reach) -> RuledPatch:
+def rectangle(face: CadFace, d: Vector3, reach: Reach) -> RuledPatch:
     """Return the rectangle of a plane face over its reach across d."""
     across = np.cross(face.normal, d)
     corner = float(face.place @ face.normal) * face.normal + reach[0] * d
@@ -91,9 +91,9 @@ def _rectangle(face: CadFace, d: Vector3, reach: Reach) -> RuledPatch:
 
 def merged(loops: Sequence[Loops], breaks: Sequence[int]) -> Loops:
     """Return the loops of faces side by side as those of one: the outer ones spliced where the faces meet."""
-    outer = _counter_clockwise(loops[0].curves[0])
+    outer = counter_clockwise(loops[0].curves[0])
     for one, joint in zip(loops[1:], breaks[1:-1], strict=True):
-        outer = _spliced(outer, _counter_clockwise(one.curves[0]), float(joint))
+        outer = _spliced(outer, counter_clockwise(one.curves[0]), float(joint))
     inner = [curves for one in loops for curves in one.curves[1:]]
     return Loops((outer, *inner), max(one.distance_mm for one in loops))
 
@@ -101,16 +101,17 @@ def merged(loops: Sequence[Loops], breaks: Sequence[int]) -> Loops:
 Run = tuple[PlaneCurve, ...]
 
 
-def _counter_clockwise(curves: Run) -> Run:
+def counter_clockwise(curves: Run) -> Run:
     """Return a loop run counter-clockwise in the plane of u and v."""
     t = np.linspace(0.0, 1.0, LOOP_SAMPLES)
     points = np.concatenate([curve.at(t)[:-1] for curve in curves])
     if float(cross2(points, np.roll(points, -1, axis=0)).sum()) > 0.0:
         return curves
-    return tuple(_turned(curve) for curve in curves[::-1])
+    return tuple(turned(curve) for curve in curves[::-1])
 
 
-def _turned(curve: PlaneCurve) -> PlaneCurve:
+def turned(curve: PlaneCurve) -> PlaneCurve:
+    """Return a curve run the other way; a straight one stays straight."""
     return Segment(curve.end, curve.start) if isinstance(curve, Segment) else Turned(curve)
 
 

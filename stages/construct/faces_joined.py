@@ -14,7 +14,7 @@ import numpy as np
 from stages.construct.faces_ruled import Rails, parallel, ruled_form
 from stages.construct.faces_strip import NoSeamError, sampled, strip_of
 from stages.construct.joins import SMOOTH_RAD
-from stages.geometry.arrays import Matrix, Vector3, cross3, norm, unit
+from stages.geometry.arrays import Matrix, Points3, Vector3, cross3, norm, unit
 from stages.geometry.pullback import nearest
 from stages.geometry.ruled import RuledPatch
 from stages.geometry.strip import Strip, jet
@@ -66,8 +66,8 @@ class Blank:
     notes: tuple[Finding, ...] = ()
 
 
-def blanks_of(body: CadBody) -> tuple[Blank, ...]:
-    """Return the blanks that the faces of a file make, in the order of their first faces."""
+def strips_of(body: CadBody) -> tuple[Blank, ...]:
+    """Return the strips and single faces that the faces of a file make, in the order of their first faces."""
     joints, apart = chosen(smooth_joints(body.faces))
     after = {joint.before: joint for joint in joints}
     begun = {joint.after for joint in joints}
@@ -128,7 +128,7 @@ def smooth_joints(faces: Sequence[CadFace]) -> list[Joint]:
     joinable = {i: joinable_of(faces[i]) for i in sorted({i for i, _ in rows})}
     usable = [(i, ends) for i, ends in rows if joinable[i] is not None]
     found = []
-    for a, b in _coinciding(usable, faces):
+    for a, b in coinciding(usable, faces):
         (i, ends), (j, _) = usable[a], usable[b]
         one, other = joinable[i], joinable[j]
         if one is not None and other is not None and i != j:
@@ -146,11 +146,16 @@ def straight_edges(face: CadFace) -> list[Matrix]:
             points = edge.curves[0].jet(np.linspace(0.0, 1.0, 9), 0)[0]
             if len(edge.curves) > 1 or numbers.count(edge.number) > 1:
                 continue
-            step = points[-1] - points[0]
-            off = norm(np.cross(points - points[0], unit(step)))
-            if norm(step) > 0.0 and off.max() <= STRAIGHT * norm(step):
+            if is_straight(points):
                 found.append(points[[0, -1]])
     return found
+
+
+def is_straight(points: Points3) -> bool:
+    """Return whether points lie on the line from the first to the last, which is another one."""
+    step = points[-1] - points[0]
+    off = norm(np.cross(points - points[0], unit(step)))
+    return bool(norm(step) > 0.0 and off.max() <= STRAIGHT * norm(step))
 
 
 def joinable_of(face: CadFace) -> Joinable | None:
@@ -174,7 +179,7 @@ def along(direction: Vector3) -> Vector3:
     return direction if direction @ SENSE > 0.0 else -direction
 
 
-def _coinciding(rows: Sequence[tuple[int, Matrix]], faces: Sequence[CadFace]) -> list[tuple[int, int]]:
+def coinciding(rows: Sequence[tuple[int, Matrix]], faces: Sequence[CadFace]) -> list[tuple[int, int]]:
     """Return the pairs of edges with the same ends, either way round."""
     from scipy.spatial import cKDTree
 

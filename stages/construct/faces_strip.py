@@ -59,7 +59,7 @@ def faces_out(patches: Sequence[RuledPatch], face: CadFace) -> bool:
 
 def heights(face: CadFace, direction: Vector3) -> Reach:
     """Return from where to where the edges of a face reach along a direction, mm."""
-    return _span([points @ direction for points in sampled(face)])
+    return reaches_of([points @ direction for points in sampled(face)])
 
 
 def sampled(face: CadFace) -> list[Points3]:
@@ -68,7 +68,7 @@ def sampled(face: CadFace) -> list[Points3]:
     return [curve.jet(v, 0)[0] for loop in face.loops for edge in loop for curve in edge.curves]
 
 
-def _span(rows: Sequence[Values]) -> Reach:
+def reaches_of(rows: Sequence[Values]) -> Reach:
     """Return the least and the largest value along curves, no less than what lies between their samples."""
     return -max(_most(-row) for row in rows), max(_most(row) for row in rows)
 
@@ -109,22 +109,27 @@ LEVEL = 1e-13
 
 def _profile(form: CadSweep, face: CadFace) -> tuple[Curve, ...]:
     if len(form.profile) == 1 and isinstance(form.profile[0], Circular):
-        ring = form.profile[0]
-        axes = np.stack([ring.U, ring.V, form.direction])
-        return arcs(ring, *_turn(face, lambda points: (points - ring.centre) @ np.linalg.inv(axes)))
+        return arcs(form.profile[0], *_turn(face, lambda points: axial(form, points)))
     return form.profile
+
+
+def axial(form: CadSweep | CadCone, points: Points3) -> Array:
+    """Return points by the axes of a circular profile, shape (n, 3): the first two give the angle about the axis.
+
+    On a sweep the third is along its direction, mm; on a cone all are shares of the way from the apex to the profile.
+    """
+    ring = form.profile[0] if isinstance(form, CadSweep) else form.profile
+    if not isinstance(ring, Circular):
+        raise ValueError("a profile that is no circle has no axis")
+    if isinstance(form, CadSweep):
+        return np.asarray((points - ring.centre) @ np.linalg.inv(np.stack([ring.U, ring.V, form.direction])))
+    return np.asarray((points - form.apex) @ np.linalg.inv(np.stack([ring.U, ring.V, ring.centre - form.apex])))
 
 
 def _coned(form: CadCone, face: CadFace) -> tuple[RuledPatch, ...]:
     """Return rulings from an apex, between the shares of the way to the profile that the edges reach."""
     ring, apex = form.profile, vector(exactly(form.apex))
-    back = np.linalg.inv(np.stack([ring.U, ring.V, ring.centre - form.apex]))
-
-    def places(points: Points3) -> Array:
-        """Return share times cosine, share times sine, and share of the way."""
-        return np.asarray((points - form.apex) @ back)
-
-    low, high = exactly(_span([places(points)[:, 2] for points in sampled(face)]))
+    low, high = exactly(reaches_of([axial(form, points)[:, 2] for points in sampled(face)]))
     if abs(low) <= LEVEL * 100 * abs(high):
         low = Fraction(0)
     return tuple(
@@ -133,7 +138,7 @@ def _coned(form: CadCone, face: CadFace) -> tuple[RuledPatch, ...]:
             affine(arc, scaling(high), combine((1 - high, apex))),
             affine(arc, scaling(high - low), combine((low - high, apex))),
         )
-        for arc in arcs(ring, *_turn(face, places))
+        for arc in arcs(ring, *_turn(face, lambda points: axial(form, points)))
     )
 
 
@@ -172,7 +177,7 @@ def _turn(face: CadFace, places: Callable[[Points3], Array]) -> Reach:
         x, y, *_ = places(seam)[0]
         start = float(np.arctan2(y, x))
         return start, start + FULL
-    angles = [_unwound(places(points)) for points in sampled(face)]
+    angles = [unwound(places(points)) for points in sampled(face)]
     every = np.sort(np.concatenate([row % FULL for row in angles]))
     gaps = np.diff(every, append=every[0] + FULL)
     widest = int(np.argmax(gaps))
@@ -180,11 +185,11 @@ def _turn(face: CadFace, places: Callable[[Points3], Array]) -> Reach:
         raise NoSeamError
     # counted from the middle of the gap no curve passes 0
     origin = float(every[widest] + gaps[widest] / 2.0)
-    low, high = _span([(row - origin) % FULL for row in angles])
+    low, high = reaches_of([(row - origin) % FULL for row in angles])
     return low + origin, high + origin
 
 
-def _unwound(places: Array) -> Values:
+def unwound(places: Array) -> Values:
     """Return the angles of places, without jumps; at an apex that of the place beside it."""
     x, y = places[:, 0], places[:, 1]
     there = np.hypot(x, y) > LEVEL * np.hypot(x, y).max()

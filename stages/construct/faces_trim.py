@@ -73,7 +73,7 @@ def _loop(strip: Strip, edges: Sequence[CadEdge]) -> tuple[tuple[PlaneCurve, ...
         chosen.append(left[0] if end is None else min(left, key=lambda way: float(norm(_start(way) - end))))
         if len(ways) > 1:
             used.add((number, float(_start(chosen[-1])[1])))
-    return _closed(strip, chosen), max(off for _, off, _ in found)
+    return closed(strip, chosen), max(off for _, off, _ in found)
 
 
 def _start(way: PlaneCurve) -> Vector2:
@@ -98,12 +98,20 @@ def _pulled(strip: Strip, curve: Curve) -> tuple[float, Ways]:
     every = curve.jet(np.linspace(0.0, 1.0, STEPS + 1), 0)[0]
     off = float(norm(points(strip, *edge.table.T) - every).max())
     inner = edge.table[1:-1]
-    if np.ptp(inner[:, 1]) <= STRAIGHT:
-        return off, _along_ruling(strip, curve, float(np.median(inner[:, 1])))
+    v = _one_end(strip, inner[:, 1])
+    if np.ptp(v) <= STRAIGHT:
+        return off, _along_ruling(strip, curve, float(np.median(v)))
     for side in (0.0, 1.0):
         if np.abs(inner[:, 0] - side).max() <= STRAIGHT:
             return off, (_along_edge(strip, edge, side),)
     return off, (tabled(edge, strip),)
+
+
+def _one_end(strip: Strip, v: Values) -> Values:
+    """Return places on the seam of a closed strip at its beginning all of them, any others as they are."""
+    first, last = float(strip.knots[0]), float(strip.knots[-1])
+    on_seam = np.minimum(v - first, last - v) <= STRAIGHT
+    return np.full_like(v, first) if on_seam.all() and closes(strip) else v
 
 
 def _along_ruling(strip: Strip, curve: Curve, v: float) -> Ways:
@@ -136,7 +144,7 @@ def closes(strip: Strip) -> bool:
     return float(norm(np.concatenate([c0 - c0_end, c0 + p - c0_end - p_end])).max()) <= MEETS * size(strip)
 
 
-def _closed(strip: Strip, run: Sequence[PlaneCurve]) -> tuple[PlaneCurve, ...]:
+def closed(strip: Strip, run: Sequence[PlaneCurve]) -> tuple[PlaneCurve, ...]:
     """Return the curves of a loop, joined along an apex where they part there.  Raises OpenLoopError."""
     made: list[PlaneCurve] = []
     for one, following in zip(run, [*run[1:], run[0]], strict=True):

@@ -152,18 +152,18 @@ def _curve(strip: Strip, spec: CurveSpec) -> tuple[tuple[PlaneCurve, ...], float
         _refuse_gaps(strip, edges)
         return edges, None
     pulled = [pulled_back(strip, curve, SAMPLES) for curve in chain(spec).curves]
-    distance = max(_checked(strip, edge) for edge in pulled)
+    distance = max(checked(strip, edge) for edge in pulled)
     _refuse_gaps(strip, tuple(pulled))
     return tuple(tabled(edge, strip) for edge in pulled), distance
 
 
-def _checked(strip: Strip, edge: PulledBack) -> float:
+def checked(strip: Strip, edge: PulledBack) -> float:
     """Return the largest distance of a curve from the surface, mm; refuse one that leaves it or jumps on it."""
     every = edge.curve.jet(np.linspace(0.0, 1.0, len(edge.table)), 0)[0]
     found = jet(strip, edge.table[:, 0], edge.table[:, 1])
     off = every - found.s
     _refuse_jumps(strip, edge.table, every, found.s)
-    along = _tangential(off, found.s_u, found.s_v)
+    along = tangential(off, found.s_u, found.s_v)
     worst = int(np.argmax(along))
     if along[worst] > ON_EDGE * size(strip):
         u, v = edge.table[worst]
@@ -172,7 +172,7 @@ def _checked(strip: Strip, edge: PulledBack) -> float:
     return float(norm(off).max())
 
 
-def _tangential(off: Points3, s_u: Points3, s_v: Points3) -> Values:
+def tangential(off: Points3, s_u: Points3, s_v: Points3) -> Values:
     """Return the length of each vector's part in the tangent plane, mm; 0 where there is none (an apex)."""
     normal = np.cross(s_u, s_v)
     length = norm(normal)

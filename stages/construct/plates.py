@@ -36,6 +36,11 @@ def laid(part: Part, links: Sequence[Chain], frame: PlaneFrame, tol: Tolerances)
     holes = tuple(in_plane(link, frame, clockwise=True) for link in links[1:])
     if contours.area(outline) <= 0.0:
         findings.append(Finding("no-area", "the outline encloses no area", fatal=True))
+    findings += [
+        Finding("no-area", f"holes[{i}] encloses no area", fatal=True)
+        for i, hole in enumerate(holes)
+        if contours.area(hole) >= 0.0
+    ]
     features = placement(part.spec, lambda name, feature: placed_in_plane(name, feature, frame, tol), tol)
     findings += features.findings
     report = StageReport("construct", part.name, (*metrics, planar, *features.metrics), tuple(findings))

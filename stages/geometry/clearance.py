@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from shapely import STRtree, box
 
-from stages.geometry.arcpath import ArcPath, centres, chords, piece_count, radii
+from stages.geometry.arcpath import ArcPath, chords, piece_count
 from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Points2, Values, cross2, dot, norm, unit
 
 FLAT_BULGE = 1e-12
@@ -47,14 +47,23 @@ class Pieces(ArrayValue):
 def pieces(path: ArcPath) -> Pieces:
     """Return the lines and arcs of a path, pieces of length 0 left out."""
     bulge = path.bulges[: piece_count(path)]
-    keep = np.flatnonzero(norm(np.subtract(*chords(path))) > 0.0)
+    start, end = chords(path)
+    keep = np.flatnonzero(norm(end - start) > 0.0)
     if keep.size == 0:
         raise ValueError("a path of length 0 has no distance to anything")
-    flat = np.abs(bulge) < FLAT_BULGE
-    start, end = chords(path)
-    centre = np.where(flat[:, None], 0.0, centres(path))
-    radius = np.where(flat, 0.0, radii(path))
-    return Pieces(start, end, np.where(flat, 0.0, bulge), centre, radius).take(keep)
+    return between(start[keep], end[keep], bulge[keep])
+
+
+def between(start: Points2, end: Points2, bulge: Values) -> Pieces:
+    """Return the lines and arcs between points, none of length 0."""
+    bulge = np.where(np.abs(bulge) < FLAT_BULGE, 0.0, bulge)
+    curved = bulge != 0.0
+    safe = np.where(curved, bulge, 1.0)
+    chord = end - start
+    left = np.stack([-chord[:, 1], chord[:, 0]], axis=1)
+    centre = (start + end) / 2.0 + ((1.0 / safe - safe) / 4.0)[:, None] * left
+    radius = norm(chord) * np.abs(1.0 / safe + safe) / 4.0
+    return Pieces(start, end, bulge, np.where(curved[:, None], centre, 0.0), np.where(curved, radius, 0.0))
 
 
 def joined(many: Sequence[Pieces]) -> Pieces:
@@ -115,6 +124,22 @@ def _near_pairs(low_high: Array, owner: Indices, within: float) -> Iterator[tupl
         wanted = owner[first] < owner[second]
         if wanted.any():
             yield first[wanted], second[wanted]
+
+
+def nearest(some: Pieces, owner: Indices, to: Pieces, *, within: float) -> dict[int, float]:
+    """Return the smallest distance in mm, exact, to other pieces of every owner that is not farther than `within`."""
+    least: dict[int, float] = {}
+    low_high = boxes(some)
+    tree = STRtree(box(*boxes(to).T))
+    for start in range(0, owner.size, BLOCK):
+        chosen = slice(start, start + BLOCK)
+        low, high = low_high[chosen, :2] - within, low_high[chosen, 2:] + within
+        one, other = tree.query(box(*low.T, *high.T))
+        one = one.astype(np.int64) + start
+        distance = distances(some.take(one), to.take(other.astype(np.int64)))
+        for name, value in zip(owner[one].tolist(), distance.tolist(), strict=True):
+            least[name] = min(value, least.get(name, np.inf))
+    return {name: value for name, value in sorted(least.items()) if value <= within}
 
 
 def inside(point: Points2, closed: Pieces) -> Mask:

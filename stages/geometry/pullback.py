@@ -36,6 +36,8 @@ BISECTIONS = 44
 """From 2^-16 of a patch, neighbours of the interval included, to the last digit."""
 SAME = 1e-9
 """Two distances or places that differ by less than this share of the size are the same."""
+ROUNDING = 1e-14
+"""Share of the size that two ways to compute one distance may differ by."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,10 +190,10 @@ def pulled_back(strip: Strip, curve: Curve, count: int) -> PulledBack:
     that ruling, or the place is sought by `nearest`.
     """
     every = curve.jet(np.linspace(0.0, 1.0, count + 1), 0)[0]
-    start, distance = _by_rulings(strip, every)
-    table, moved = _newton(strip, every, start)
+    start, distance = by_rulings(strip, every)
+    table, moved = newton(strip, every, start)
     reached = norm(jet(strip, table[:, 0], table[:, 1]).s - every)
-    for i in np.flatnonzero((moved > SETTLED) | (reached > distance + SAME**2 * size(strip))):
+    for i in np.flatnonzero((moved > SETTLED) | (reached > distance + ROUNDING * size(strip))):
         table[i] = nearest(strip, every[i]).place
     return PulledBack(strip, curve, _unseamed(strip, _over_seam(strip, every, table)))
 
@@ -202,15 +204,15 @@ def lying_on(strip: Strip, curve: Curve, count: int, *, within_mm: float) -> Pul
     Newton's method is enough where it arrives on the surface; only what it does not find is sought by `nearest`.
     """
     every = curve.jet(np.linspace(0.0, 1.0, count + 1), 0)[0]
-    start, distance = _by_rulings(strip, every)
-    table = _over_seam(strip, every, _newton(strip, every, start)[0])
+    start, distance = by_rulings(strip, every)
+    table = _over_seam(strip, every, newton(strip, every, start)[0])
     off = norm(jet(strip, table[:, 0], table[:, 1]).s - every)
-    for i in np.flatnonzero((off > within_mm) & (off > distance)):
+    for i in np.flatnonzero((off > within_mm) & (off > distance + ROUNDING * size(strip))):
         table[i] = nearest(strip, every[i]).place
     return PulledBack(strip, curve, _unseamed(strip, table))
 
 
-def _by_rulings(strip: Strip, every: Points3) -> tuple[Points2, Values]:
+def by_rulings(strip: Strip, every: Points3) -> tuple[Points2, Values]:
     """Return for each point the nearest place on `FIRST_CELLS` rulings of each patch, and its distance, mm."""
     v = np.concatenate([np.linspace(a, b, FIRST_CELLS) for a, b in pairwise(strip.knots)])
     c0, p, *_ = _four(strip, v)
@@ -230,7 +232,7 @@ def _over_seam(strip: Strip, every: Points3, table: Points2) -> Points2:
     if not at_end.size:
         return table
     here, points_there = table[at_end], every[at_end]
-    there, _ = _newton(strip, points_there, np.stack([here[:, 0], first + last - here[:, 1]], axis=1))
+    there, _ = newton(strip, points_there, np.stack([here[:, 0], first + last - here[:, 1]], axis=1))
     off, off_there = (norm(jet(strip, *places.T).s - points_there) for places in (here, there))
     fresh = table.copy()
     fresh[at_end] = np.where((off_there < off - SAME * size(strip))[:, None], there, here)
@@ -259,14 +261,14 @@ def settled(strip: Strip, x: Points3, place: Points2) -> Points2:
 
     Raises NoSolutionError where the last step is not rounding.
     """
-    place, moved = _newton(strip, x, place)
+    place, moved = newton(strip, x, place)
     worst = float(moved.max())
     if worst > SETTLED:
         raise NoSolutionError("pulling a curve back onto the surface", reached=worst, wanted=SETTLED, unit="of u, v")
     return place
 
 
-def _newton(strip: Strip, x: Points3, place: Points2) -> tuple[Points2, Values]:
+def newton(strip: Strip, x: Points3, place: Points2) -> tuple[Points2, Values]:
     """Return the places after Newton's method, and the last step of each."""
     low, high = np.array([0.0, strip.knots[0]]), np.array([1.0, strip.knots[-1]])
     moved = np.zeros(len(place))

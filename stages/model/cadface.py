@@ -88,12 +88,27 @@ class CadFace(ArrayValue):
     area_mm2: float | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CadJoint(ArrayValue):
+    """A straight edge along which two faces of a body, by place, go over into each other.
+
+    ends: of the edge, mm, shape (2, 3), as the outline of `one` runs with the face on its left, seen from outside.
+    """
+
+    one: int
+    other: int
+    ends: Array
+
+
 @dataclass(frozen=True, slots=True)
 class CadBody:
     """Faces of one file.
 
     direction: of the rulings along which each face goes over into the next; None for faces that are taken one by one.
+    joints: of faces that go over into each other in any direction, as a tree: the k-th of the first ones joins face
+    k + 1 to one before it; the others close rings that lie flat.
     """
 
     faces: tuple[CadFace, ...]
     direction: tuple[float, float, float] | None = None
+    joints: tuple[CadJoint, ...] = ()

@@ -24,6 +24,7 @@ from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, Q
 from stages.model.quinticstrip import QuinticStrip
 from stages.model.rails import Rails
 from stages.model.scalars import Angle, Direction, Length, Number, Point, is_zero
+from stages.model.sheet import Quality
 
 
 class Ruled(Table, frozen=True, kw_only=True, tag_field="kind", tag="ruled"):
@@ -185,6 +186,10 @@ SurfaceSpec = PieceSpec | Strip | Flat | Elbow | Tee | FaceFile | MeshFile
 KINDS: tuple[type[Table], ...] = get_args(SurfaceSpec)
 
 
+WIDEST_BAND = 90
+"""Degrees either way: everything.  A direction of stretch goes across the grain by as much."""
+
+
 class PartSpec(Table, frozen=True, kw_only=True):
     """One part: its surface and how often it is needed.
 
@@ -192,6 +197,11 @@ class PartSpec(Table, frozen=True, kw_only=True):
         convex side (outer), or that on the side of p x c0' (plus) or away from it (minus).
     bend: bend lines for a part that is bent in steps.
     rotations: angles it may be turned by in the nest, or "free"; absent: what the nest allows.
+    grain: direction in the flat frame, degrees, that goes along the grain of the stock, either way; stretch_axis:
+        direction that goes across it; grain_band: how far it may stray from there.
+    quality: the least quality of a zone of the stock that it accepts, higher is better; "best": it lies outside all
+        zones; "any": it may lie in all.
+    pair: every second copy is the mirror image.
     cut: "auto" divides a part whose flat pattern overlaps itself along as few rulings as possible.
     """
 
@@ -200,6 +210,11 @@ class PartSpec(Table, frozen=True, kw_only=True):
     quantity: Annotated[int, Meta(ge=1, le=100_000)] = 1
     face: Face = "middle"
     rotations: Literal["free"] | tuple[Angle, ...] | None = None
+    grain: Angle | None = None
+    grain_band: Angle = field(default_factory=Angle)
+    stretch_axis: Angle | None = None
+    quality: Quality = "best"
+    pair: bool = False
     cut: Literal["none", "auto"] = "none"
     hole: tuple[HoleSpec, ...] = ()
     mark: tuple[MarkSpec, ...] = ()
@@ -209,6 +224,7 @@ class PartSpec(Table, frozen=True, kw_only=True):
     def troubles(self) -> Iterator[Trouble]:
         """Yield what holes, marks and notches break on this kind of surface."""
         yield from feature_troubles(self.hole, self.mark, self.notch, on=_ground(self.surface))
+        yield from self._laying_troubles()
         if self.cut == "auto" and isinstance(self.surface, Flat):
             yield Trouble("cut", "a plate has no rulings to be divided along", 'leave it out, or write "none"')
         if self.bend and isinstance(self.surface, Flat):
@@ -220,6 +236,24 @@ class PartSpec(Table, frozen=True, kw_only=True):
         for key in ("hole", "mark", "notch") if is_set(self.surface) else ():
             if getattr(self, key):
                 yield Trouble(key, "which of the blanks is meant is not said", "give that blank as a part of its own")
+
+    def _laying_troubles(self) -> Iterator[Trouble]:
+        """Yield what is wrong with the way it is to lie on the stock."""
+        if self.grain is not None and self.stretch_axis is not None:
+            yield Trouble("stretch_axis", "beside grain", "one direction is enough: the other one is across it")
+        if not 0 <= self.grain_band <= WIDEST_BAND:
+            yield Trouble("grain_band", f"{float(self.grain_band):g} deg", "from 0 to 90 deg, either way")
+        if self.grain_band > 0 and self.axis_deg is None:
+            yield Trouble("grain_band", "without a direction", "give grain or stretch_axis")
+        if self.pair and self.quantity == 1:
+            yield Trouble("pair", "a pair of one copy", "give the quantity of both together")
+
+    @property
+    def axis_deg(self) -> float | None:
+        """The direction in the flat frame that goes along the grain, degrees; None: any."""
+        if self.stretch_axis is not None:
+            return float(self.stretch_axis) + WIDEST_BAND
+        return None if self.grain is None else float(self.grain)
 
     @property
     def has_features(self) -> bool:

@@ -29,7 +29,7 @@ class Contour:
 LETTER_WIDTH = 1.0
 """Width of a letter in heights: the widest letters of the fonts that readers put in for STANDARD."""
 
-MarkLayer = Literal["MARK", "BEND_UP", "BEND_DOWN", "ROLL"]
+MarkLayer = Literal["MARK", "BEND_UP", "BEND_DOWN", "ROLL", "ENGRAVE"]
 
 
 @dataclass(frozen=True, slots=True)

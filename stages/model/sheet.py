@@ -85,6 +85,11 @@ class NestOptions:
     kerf_mm: float = 0.0
     offcut_min_mm: float = 100.0
 
+    @property
+    def common_kerf_mm(self) -> float | None:
+        """How far apart edges are that are cut together; None: none are."""
+        return self.kerf_mm if self.common_line else None
+
 
 @dataclass(frozen=True, slots=True)
 class Placement:

@@ -30,6 +30,7 @@ class Placed(ArrayValue):
     at: its place, if it has one.  curve: its curve otherwise, as smooth pieces end to end.
     distance_mm: how far from the surface, at most, it was given; None where it was given on the surface.
     on_mesh: on a mesh, instead of both: its place, or the points of its smooth pieces end to end.
+    faces: on a branched surface, the face by its place there, for `at` or for each piece of `curve`.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Placed(ArrayValue):
     curve: tuple[PlaneCurve, ...] = ()
     distance_mm: float | None = None
     on_mesh: tuple[OnMesh, ...] = ()
+    faces: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +119,39 @@ class MeshSurface:
     kept: Numbers = field(default_factory=no_pairs)
 
 
-Surface = RuledSurface | Plate | MeshSurface
+@dataclass(frozen=True, slots=True)
+class Hinge:
+    """A straight edge at which two faces of a branched surface, by place, go over into each other.
+
+    of_one, of_other: the edge in the trim of each: the loop (0 the outer one) and the curve in it; the two run opposite
+    ways, each with its face on the left.
+    """
+
+    one: int
+    other: int
+    of_one: tuple[int, int]
+    of_other: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class BranchedSurface:
+    """Ruled faces that go over into each other along straight edges in any direction, laid flat as one blank.
+
+    faces: each with a trim, outer loop counter-clockwise in u and v, holes clockwise; the part's v runs on from one to
+    the next.  numbers: of the faces in their file.
+    hinges: the k-th of the first ones lays face k + 1 against one before it; the others close rings that lie flat.
+    features: what is cut into it and drawn on it.
+    """
+
+    part: Part
+    faces: tuple[RuledSurface, ...]
+    numbers: tuple[int, ...]
+    hinges: tuple[Hinge, ...]
+    size_mm: float
+    features: tuple[Placed, ...] = ()
+
+
+Surface = RuledSurface | Plate | MeshSurface | BranchedSurface
 
 
 @dataclass(frozen=True, slots=True)

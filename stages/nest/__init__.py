@@ -1,117 +1,109 @@
-"""Nest: every copy of every part on sheets, certified.
+"""Nest: every copy of every part on sheets, remnants, rolls and hides, certified.
 
 A first placement without clock or random numbers; where it fits one sheet it is final, so the same job gives the same
 bytes.  Otherwise an engine searches for a better one within the time limit.  Whatever is returned has passed the
 certifier, which looks at the exact contours; what has not is discarded.
-
-Limits: rectangular sheets, no defects, no mirroring; parts may lie in holes of other parts.
 """
 
-from collections import Counter
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from stages.geometry.arcpath import area
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric, Outcome, StageReport
-from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout
+from stages.model.sheet import Nesting, NestOptions, Sheet
 from stages.model.tolerances import Tolerances
-from stages.nest.blank import Bed, Placed, as_blank, bed
-from stages.nest.fit import Kind, kind
-from stages.nest.legal import certify, passed, utilisation
-from stages.nest.search import Engine, search_plan
-from stages.nest.sheets import Filled, Plan, Task, first_plans
+from stages.nest.blank import Bed
+from stages.nest.finish import finished
+from stages.nest.fit import Kind
+from stages.nest.gate import oriented, troubles
+from stages.nest.layout import as_nesting
+from stages.nest.legal import certify, passed
+from stages.nest.lots import EMPTY, task_of
+from stages.nest.raster import fill_raster
+from stages.nest.search import Engine, search_plans
+from stages.nest.sheets import Plan, Task, first_plans
+
+__all__ = ["as_nesting", "needs_search", "nest", "nest_with"]
 
 
 def nest(
-    patterns: Sequence[FlatPattern], stock: Sequence[Sheet], options: NestOptions, tol: Tolerances
-) -> Outcome[Nesting | None]:
-    """Return every copy placed on sheets of the stock, or None with the finding that says why not."""
-    return nest_with(patterns, stock, options, tol, Engine(options.seed))
-
-
-def nest_with(
-    patterns: Sequence[FlatPattern], stock: Sequence[Sheet], options: NestOptions, _: Tolerances, engine: Engine
-) -> Outcome[Nesting | None]:
-    """Return the same with an engine of one's own."""
-    beds = [bed(number, sheet, options) for number, sheet in enumerate(stock)]
-    kinds = [kind(as_blank(number, pattern, options), beds) for number, pattern in enumerate(patterns)]
-    task = Task(kinds, beds, {number: pattern.quantity for number, pattern in enumerate(patterns)})
-    refused = [_too_large(one, beds) for one in kinds if one.blank.pattern.quantity and not any(map(one.on, beds))]
-    if refused:
-        return _outcome(None, (), refused)
-    plans = first_plans(task)
-    findings: list[Finding] = []
-    if needs_search(plans[0]) and options.time_limit_s > 0.0:
-        found, findings = _searched(task, plans[0], options.time_limit_s, engine)
-        plans = sorted([found, *plans], key=lambda plan: plan.cost)
-    if plans[0].left:
-        return _outcome(None, (), [*findings, _exhausted(plans[0], kinds, beds)])
-    return _first_certified(plans, patterns, stock, options, findings)
-
-
-def needs_search(plan: Plan) -> bool:
-    """Return whether a plan is not final: more than one sheet, or copies left."""
-    return len(plan.sheets) > 1 or bool(plan.left)
-
-
-def _searched(task: Task, first: Plan, time_limit_s: float, engine: Engine) -> tuple[Plan, list[Finding]]:
-    """Return what the search found, and what the engine failed with or that it was interrupted."""
-    plan = search_plan(task, first, time_limit_s, engine)
-    findings = [Finding("engine-failed", f"the nesting engine failed: {why}") for why in engine.failures]
-    if engine.interrupted:
-        findings.append(Finding("interrupted", "the search was interrupted: the best layout so far is used"))
-    return plan, findings
-
-
-def _first_certified(
-    plans: Sequence[Plan],
     patterns: Sequence[FlatPattern],
     stock: Sequence[Sheet],
     options: NestOptions,
-    findings: Sequence[Finding],
+    tol: Tolerances,
+    fixed: Nesting | None = None,
 ) -> Outcome[Nesting | None]:
-    """Return the best plan that passes the certifier."""
+    """Return every copy placed on sheets of the stock, or None with the finding that says why not.
+
+    fixed: placements that stay as they are, on the first sheets; what they leave is placed around them.
+    """
+    return nest_with(patterns, stock, options, tol, Engine(options.seed), fixed)
+
+
+def nest_with(
+    patterns: Sequence[FlatPattern],
+    stock: Sequence[Sheet],
+    options: NestOptions,
+    _: Tolerances,
+    engine: Engine,
+    fixed: Nesting | None = None,
+) -> Outcome[Nesting | None]:
+    """Return the same with an engine of one's own."""
+    found = troubles(patterns, stock, options)
+    if any(finding.fatal for finding in found):
+        return _outcome(None, (), found)
+    task = task_of([oriented(pattern) for pattern in patterns], stock, options, fixed or EMPTY)
+    wanted = [one for one in task.kinds if task.counts[one.blank.part]]
+    refused = [_too_large(one, task.beds) for one in wanted if not any(map(one.on, task.beds))]
+    if refused:
+        return _outcome(None, (), [*found, *refused])
+    # where every copy is given there is nothing to choose, and nothing to search
+    plans = first_plans(task) if wanted else first_plans(task)[:1]
+    if wanted and needs_search(plans[0]) and options.time_limit_s > 0.0:
+        better, told = _searched(task, plans[0], options.time_limit_s, engine)
+        plans, found = sorted([*better, *plans], key=lambda plan: plan.cost), [*found, *told]
+    if plans[0].left:
+        return _outcome(None, (), [*found, *_left_over(plans[0], task)])
+    return _first_certified(plans, Rules(patterns, stock, options, fixed), found)
+
+
+def needs_search(plan: Plan) -> bool:
+    """Return whether a plan is not final: more than one sheet, a roll, or copies left."""
+    return len(plan.sheets) > 1 or bool(plan.left) or any(sheet.bed.sheet.is_roll for sheet in plan.sheets)
+
+
+def _searched(task: Task, first: Plan, time_limit_s: float, engine: Engine) -> tuple[list[Plan], list[Finding]]:
+    """Return what the search found, and what the engine failed with or that it was interrupted."""
+    plans = search_plans(task, first, time_limit_s, engine)
+    findings = [Finding("engine-failed", f"the nesting engine failed: {why}") for why in engine.failures]
+    if engine.interrupted:
+        findings.append(Finding("interrupted", "the search was interrupted: the best layout so far is used"))
+    return plans, findings
+
+
+class Rules(NamedTuple):
+    """What a nest is held against."""
+
+    patterns: Sequence[FlatPattern]
+    stock: Sequence[Sheet]
+    options: NestOptions
+    fixed: Nesting | None
+
+
+def _first_certified(plans: Sequence[Plan], rules: Rules, findings: Sequence[Finding]) -> Outcome[Nesting | None]:
+    """Return the best plan that passes the certifier, its parts in the order of cutting."""
     kept = list(findings)
     for plan in plans:
         if plan.left:
             continue
-        nesting = as_nesting(plan, patterns)
-        metrics, faults = certify(nesting, patterns, stock, options)
-        if passed(metrics, faults):
-            return _outcome(nesting, metrics, kept)
-        kept += [Finding("layout-discarded", fault.message, where=fault.where) for fault in faults]
+        nesting = as_nesting(plan, rules.patterns, rules.options)
+        for made in finished(nesting, rules.patterns, rules.options, rules.fixed):
+            metrics, faults = certify(made.nesting, *rules)
+            if passed(metrics, faults):
+                return _outcome(made.nesting, (*metrics, *made.metrics), kept)
+            kept += [Finding("layout-discarded", fault.message, where=fault.where) for fault in faults]
     kept.append(Finding("no-layout", "no layout passed the certifier", fatal=True))
     return _outcome(None, (), kept)
-
-
-def as_nesting(plan: Plan, patterns: Sequence[FlatPattern]) -> Nesting:
-    """Return a plan as it is cut: sheets counted within their stock, copies within their part."""
-    sheets: Counter[str] = Counter()
-    copies: Counter[str] = Counter()
-    layouts = []
-    for filled in plan.sheets:
-        sheets[filled.bed.sheet.id] += 1
-        placements = []
-        for placed in sorted(filled.placed, key=_inner_first):
-            copies[placed.turned.blank.pattern.part] += 1
-            part = placed.turned.blank.pattern.part
-            placements.append(Placement(part, copies[part], placed.motion(filled.bed)))
-        layouts.append(_layout(filled, sheets[filled.bed.sheet.id], tuple(placements), patterns))
-    return Nesting(tuple(layouts))
-
-
-def _inner_first(placed: Placed) -> tuple[float, int, float, float]:
-    """Sort small outlines before large ones: what lies in a hole is cut before the hole is."""
-    pattern = placed.turned.blank.pattern
-    return abs(area(pattern.outer.path)), placed.turned.blank.part, placed.x, placed.y
-
-
-def _layout(
-    filled: Filled, index: int, placements: tuple[Placement, ...], patterns: Sequence[FlatPattern]
-) -> SheetLayout:
-    bare = SheetLayout(filled.bed.sheet, index, placements, 0.0)
-    share = utilisation(Nesting((bare,)), {pattern.part: pattern for pattern in patterns})
-    return SheetLayout(filled.bed.sheet, index, placements, share or 0.0)
 
 
 def _outcome(
@@ -120,24 +112,37 @@ def _outcome(
     return Outcome(nesting, StageReport("nest", "nest", tuple(metrics), tuple(findings)))
 
 
+def _left_over(plan: Plan, task: Task) -> list[Finding]:
+    """Return which parts find no place even on an empty sheet, or else that the stock is used up."""
+    left = [one for one in task.kinds if plan.left.get(one.blank.part)]
+    hopeless = [one for one in left if not any(fill_raster(bed, [(1, one.on(bed))]) for bed in task.beds)]
+    return [_too_large(one, task.beds) for one in hopeless] or [_exhausted(plan, left, task.beds)]
+
+
 def _too_large(one: Kind, beds: Sequence[Bed]) -> Finding:
     """Return that a part fits no sheet in any angle it may take."""
     part = one.blank.pattern.part
-    turns = "turned as you like" if one.blank.angles is None else f"turned by {_listed(one.blank.angles)} deg"
-    message = f"part '{part}', {_size(one)} mm, fits no sheet, {turns}; the largest has room for {_room(beds)} mm"
+    message = f"part '{part}', {_size(one)} mm, fits no sheet, {_turns(one)}; the largest has room for {_room(beds)} mm"
     return Finding("part-too-large", message, fatal=True, where={"part": part})
 
 
-def _exhausted(plan: Plan, kinds: Sequence[Kind], beds: Sequence[Bed]) -> Finding:
+def _exhausted(plan: Plan, left: Sequence[Kind], beds: Sequence[Bed]) -> Finding:
     """Return which copies found no place on all sheets there are."""
-    left = [(one, plan.left[one.blank.part]) for one in kinds if plan.left.get(one.blank.part)]
-    names = ", ".join(f"{count} of '{one.blank.pattern.part}' ({_size(one)} mm)" for one, count in left)
+    counted = [(one, plan.left[one.blank.part]) for one in left]
+    names = ", ".join(f"{count} of '{one.blank.pattern.part}' ({_size(one)} mm)" for one, count in counted)
     message = f"the stock is used up, not placed: {names}; the largest sheet has room for {_room(beds)} mm"
-    return Finding("stock-exhausted", message, fatal=True, where={"part": left[0][0].blank.pattern.part})
+    return Finding("stock-exhausted", message, fatal=True, where={"part": left[0].blank.pattern.part})
 
 
-def _listed(angles: Sequence[float]) -> str:
-    return ", ".join(f"{angle:g}" for angle in angles)
+def _turns(one: Kind) -> str:
+    """Return how a part may be turned, in words."""
+    spans = list(dict.fromkeys(span for turns in one.spans for each in turns for span in each.spans or ()))
+    if not one.spans or any(each.spans is None for turns in one.spans for each in turns):
+        return "turned as you like"
+    if not spans:
+        return "as none of its angles lies along the grain"
+    listed = (f"{low:g}" if low == high else f"{low:g} to {high:g}" for low, high in spans)
+    return f"turned by {', '.join(listed)} deg"
 
 
 def _size(one: Kind) -> str:
@@ -146,7 +151,7 @@ def _size(one: Kind) -> str:
 
 
 def _room(beds: Sequence[Bed]) -> str:
-    """Return the size of the largest sheet between its edge gaps."""
+    """Return the size of the largest sheet between its edge gaps; an outline by its box."""
     sheets = [one.sheet for one in beds]
     sizes = [(one.width_mm - 2.0 * one.edge_gap_mm, one.height_mm - 2.0 * one.edge_gap_mm) for one in sheets]
     width, height = max(sizes, key=lambda size: size[0] * size[1], default=(0.0, 0.0))

@@ -1,22 +1,38 @@
-"""What is placed where: a part grown by half the gap, in the angles it may take, and the usable rectangle of a sheet.
+"""What is placed where: a part grown by half the gap, in the angles it may take, and the usable room of a sheet.
 
 Every part grows by half the gap and every sheet shrinks by the edge gap less that half: then parts may touch each
 other and the edge, and both gaps are kept.  A grown part is a polygon that contains the exact one (outward arcs by
 tangents, mitred corners, then clipped to the exact box), so the side of the approximation is always the safe one.
 """
 
+from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
-from shapely import Polygon, affinity, box, make_valid, transform
+from shapely import (
+    Geometry,
+    MultiPolygon,
+    Polygon,
+    affinity,
+    box,
+    get_parts,
+    make_valid,
+    maximum_inscribed_circle,
+    transform,
+)
 
 from stages.geometry import arcpath
 from stages.geometry.arcpath import bounds, polygon
 from stages.geometry.arrays import Points2
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.pattern import FlatPattern
-from stages.model.sheet import NestOptions, Sheet
+from stages.model.sheet import NestOptions, Placement, Quality, Sheet
+
+Region: TypeAlias = Polygon | MultiPolygon
+"""Where grown parts may lie, in the frame of a bed; it may be empty."""
 
 HAIR_MM = 1e-9
 """Parts grow by this much more than half the gap, so that parts that touch are apart in spite of rounding (1e-12)."""
@@ -33,27 +49,68 @@ MANY_VERTICES = 60
 MITRE_LIMIT = 1.5
 """Corners of 90 degrees (1.41) keep their point, so that boxes stay boxes; sharper ones are cut off outside the arc."""
 
-NEVER_TURNED = (0.0,)
+CIRCLE_SHARE = 1e-3
+"""How closely the largest circle in a part is wanted, in shares of the part."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Bed:
-    """The rectangle in which grown parts may lie: `inset_mm` inside the sheet; `stock` is its place in the list."""
+    """Where grown parts may lie on a sheet; `stock` is its place in the list.
+
+    x_mm, y_mm: where the origin of the bed lies on the sheet.
+    width_mm, height_mm: the box of the room; the width of a roll is a bound that suffices for all parts.
+    regions: the room itself for each class of parts, None where it is the whole box: the first for parts that every
+    zone is good enough for, each next one without the zones of one more of the rising `levels` of quality.
+    cost, cost_mm: what one such sheet counts, and each mm of it that is used.
+    """
 
     stock: int
     sheet: Sheet
-    inset_mm: float
+    x_mm: float
+    y_mm: float
     width_mm: float
     height_mm: float
+    regions: tuple[Region | None, ...] = (None,)
+    levels: tuple[int, ...] = ()
+    cost: float = 1.0
+    cost_mm: float = 0.0
+
+    def level(self, quality: Quality) -> int:
+        """Return the number of the class of parts of a quality: how many levels of zones they must not enter."""
+        if quality == "best":
+            return len(self.levels)
+        return 0 if quality == "any" else bisect_left(self.levels, quality)
+
+    def region(self, quality: Quality) -> Region | None:
+        """Return where grown parts of a quality may lie, in the frame of the bed; None: in the whole box."""
+        return self.regions[self.level(quality)]
+
+    def room_mm2(self, quality: Quality) -> float:
+        """Return the area of that region in mm2."""
+        region = self.region(quality)
+        return self.width_mm * self.height_mm if region is None else float(region.area)
+
+    @property
+    def area_mm2(self) -> float:
+        """The area of the room, zones included."""
+        return self.room_mm2("any")
+
+    @property
+    def plain(self) -> bool:
+        """Whether every part may lie in the whole box."""
+        return all(region is None for region in self.regions)
 
 
 @dataclass(frozen=True, eq=False)
 class Blank:
-    """One part to be placed: its place in the list, what it may be turned by (None: any angle), its grown polygon."""
+    """One part to be placed, as it is or mirrored: its grown polygon in the flat frame, mirrored already.
+
+    part: its number among the lots, in which copies are counted (the two hands of a pair have one each).
+    """
 
     part: int
     pattern: FlatPattern
-    angles: tuple[float, ...] | None
+    mirrored: bool
     grow_mm: float
     shape: Polygon
 
@@ -61,6 +118,13 @@ class Blank:
     def area_mm2(self) -> float:
         """The area of the part itself."""
         return net_area(self.pattern)
+
+    @cached_property
+    def inner_radius_mm(self) -> float:
+        """The radius of the largest circle in the grown part, or up to the tolerance less."""
+        low_x, low_y, high_x, high_y = self.shape.bounds
+        longest = float(np.hypot(high_x - low_x, high_y - low_y))
+        return float(maximum_inscribed_circle(self.shape, tolerance=CIRCLE_SHARE * longest).length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,21 +156,33 @@ class Turned:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
-    """A turned part whose box has its lower left corner at (x, y) of the bed."""
+    """A turned part whose box has its lower left corner at (x, y) of the bed.
+
+    given: the placement by which it was put there from outside; it stays.
+    """
 
     turned: Turned
     x: float
     y: float
+    given: Placement | None = None
 
     @property
     def right_mm(self) -> float:
         """The right end of the box."""
         return self.x + self.turned.width_mm
 
+    @property
+    def top_mm(self) -> float:
+        """The upper end of the box."""
+        return self.y + self.turned.height_mm
+
     def motion(self, bed: Bed) -> Rigid2:
         """Return the motion from the flat frame of the part to the sheet."""
+        if self.given is not None:
+            return self.given.motion
         turned = self.turned
-        return Rigid2(self.x + turned.dx + bed.inset_mm, self.y + turned.dy + bed.inset_mm, turned.angle_deg)
+        x, y = self.x + turned.dx + bed.x_mm, self.y + turned.dy + bed.y_mm
+        return Rigid2(x, y, turned.angle_deg, turned.blank.mirrored)
 
 
 def net_area(pattern: FlatPattern) -> float:
@@ -115,24 +191,13 @@ def net_area(pattern: FlatPattern) -> float:
     return abs(arcpath.area(pattern.outer.path)) - holes
 
 
-def bed(stock: int, sheet: Sheet, options: NestOptions) -> Bed:
-    """Return where grown parts may lie on a sheet."""
-    inset = sheet.edge_gap_mm - options.gap_mm / 2.0 - HAIR_MM
-    return Bed(stock, sheet, inset, sheet.width_mm - 2.0 * inset + SLACK_MM, sheet.height_mm - 2.0 * inset + SLACK_MM)
-
-
-def as_blank(part: int, pattern: FlatPattern, options: NestOptions) -> Blank:
+def as_blank(part: int, pattern: FlatPattern, options: NestOptions, *, mirrored: bool = False) -> Blank:
     """Return a part ready to be placed."""
     grow = options.gap_mm / 2.0 + HAIR_MM
-    return Blank(part, pattern, allowed_angles(pattern, options), grow, _grown(pattern, grow))
-
-
-def allowed_angles(pattern: FlatPattern, options: NestOptions) -> tuple[float, ...] | None:
-    """Return the angles in [0, 360) degrees a part may be turned by, None for any; its own list goes first."""
-    wished = options.rotations if pattern.rotations is None else pattern.rotations
-    if wished is None or wished == "free":
-        return None
-    return tuple(dict.fromkeys(angle % 360.0 for angle in wished)) or NEVER_TURNED
+    shape = _grown(pattern, grow)
+    if mirrored:
+        shape = transform(shape, lambda points: apply(Rigid2(mirrored=True), points))
+    return Blank(part, pattern, mirrored, grow, shape)
 
 
 def _grown(pattern: FlatPattern, grow_mm: float) -> Polygon:
@@ -157,15 +222,28 @@ def material(pattern: FlatPattern, chord_mm: float) -> Polygon:
     return max(getattr(parts, "geoms", [parts]), key=lambda one: one.area)
 
 
+def extent(blank: Blank, angle_deg: float) -> tuple[float, float, float, float]:
+    """Return the exact box of the part itself, turned by an angle: x and y least, width, height; mm."""
+    motion = Rigid2(angle_deg=angle_deg, mirrored=blank.mirrored)
+    low_x, low_y, high_x, high_y = bounds(arcpath.transform(blank.pattern.outer.path, motion))
+    return low_x, low_y, high_x - low_x, high_y - low_y
+
+
 def turned(blank: Blank, angle_deg: float) -> Turned:
     """Return a blank turned by an angle."""
-    low_x, low_y, high_x, high_y = bounds(arcpath.transform(blank.pattern.outer.path, Rigid2(angle_deg=angle_deg)))
+    low_x, low_y, wide, high = extent(blank, angle_deg)
     grow = blank.grow_mm
-    dx, dy = grow - low_x, grow - low_y
-    width, height = high_x - low_x + 2.0 * grow, high_y - low_y + 2.0 * grow
-    motion = Rigid2(dx, dy, angle_deg)
-    shape = transform(blank.shape, lambda points: apply(motion, points)).intersection(box(0.0, 0.0, width, height))
+    dx, dy, width, height = grow - low_x, grow - low_y, wide + 2.0 * grow, high + 2.0 * grow
+    shape = transform(blank.shape, lambda points: apply(Rigid2(dx, dy, angle_deg), points))
+    shape = shape.intersection(box(0.0, 0.0, width, height))
     return Turned(blank, angle_deg, dx, dy, width, height, shape)
+
+
+def fits_turned(blank: Blank, angle_deg: float, within: Bed) -> bool:
+    """Return whether the box of a blank turned by an angle lies within the bed."""
+    _, _, wide, high = extent(blank, angle_deg)
+    grow = 2.0 * blank.grow_mm
+    return wide + grow <= within.width_mm and high + grow <= within.height_mm
 
 
 def fits(one: Turned, within: Bed) -> bool:
@@ -183,11 +261,28 @@ def core_at(turned: Turned, x: float, y: float) -> Polygon:
     return affinity.translate(turned.core, x, y)
 
 
-def edges(shape: Polygon) -> tuple[Points2, Points2]:
-    """Return start and end points of all edges of a polygon, holes included, the inside to the left."""
-    rings = [(shape.exterior, True), *((hole, False) for hole in shape.interiors)]
-    turned_right = [_as_sensed(np.asarray(ring.coords)[:, :2], ring.is_ccw == sense) for ring, sense in rings]
-    return np.concatenate([ring[:-1] for ring in turned_right]), np.concatenate([ring[1:] for ring in turned_right])
+def edges(shape: Region) -> tuple[Points2, Points2]:
+    """Return start and end points of all edges of polygons, holes included, the inside to the left."""
+    rings = [ring for one in polygons(shape) for ring in _rings(one)]
+    if not rings:
+        return np.zeros((0, 2)), np.zeros((0, 2))
+    return np.concatenate([ring[:-1] for ring in rings]), np.concatenate([ring[1:] for ring in rings])
+
+
+def polygons(shape: Geometry) -> list[Polygon]:
+    """Return the polygons of which a shape consists; lines and points that came with it are dropped."""
+    return [one for one in get_parts(shape).tolist() if isinstance(one, Polygon) and not one.is_empty]
+
+
+def as_region(parts: Sequence[Polygon]) -> Region:
+    """Return polygons that do not meet as one shape."""
+    return parts[0] if len(parts) == 1 else MultiPolygon(parts)
+
+
+def _rings(shape: Polygon) -> list[Points2]:
+    """Return the closed loops of corners of a polygon, the inside to the left."""
+    sides = [(shape.exterior, True), *((hole, False) for hole in shape.interiors)]
+    return [_as_sensed(np.asarray(ring.coords)[:, :2], ring.is_ccw == sense) for ring, sense in sides]
 
 
 def _as_sensed(points: Points2, right: bool) -> Points2:

@@ -1,4 +1,4 @@
-"""Start the engine, wait for its best answer until a wall-clock limit, and leave no child behind.
+"""Start the engine, collect its layouts until a wall-clock limit, and leave no child behind.
 
 The child speaks lines of JSON.  Whatever it does (crash, hang, nonsense) ends as an `EngineError`; a layout that came
 before the end of the time is used even if the child had to be killed.
@@ -9,64 +9,43 @@ import subprocess
 import sys
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import isfinite
-from pathlib import Path
+from dataclasses import dataclass, field
 from time import monotonic
 
-ENGINE = (sys.executable, "-P", str(Path(__file__).with_name("engine.py")))
-"""The command of the engine: by its path, and without its folder in the search path of modules."""
+from stages.nest.separation.problem import NOWHERE, Kind, Spot
+from stages.nest.separation.wire import Request, as_spot, request_line
 
+ENGINE = (sys.executable, "-P", "-m", "stages.nest.separation.worker")
+"""The command of the engine; without the current folder in the search path of modules."""
 
 POLL_S = 0.1
 """How long to wait in one go: Ctrl-C is noticed in between, on every system."""
+
+READY_S = 240.0
+"""How long the engine may take to be ready: once on a machine it is compiled, for some 20 s of a free core."""
+
+GRACE_S = 0.5
+"""What a search may take beyond its seconds before it is killed; it has told its layouts by then."""
+
+READY = b'"ready"'
 
 
 class EngineError(Exception):
     """The engine gave nothing that can be used; the message says what it did instead."""
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
-    """One kind of part for the engine: corners of its polygon, in mm."""
+@dataclass(slots=True)
+class Told:
+    """What the engine has said so far, and when it was ready."""
 
-    id: str
-    count: int
-    angles: tuple[float, ...] | None
-    points: tuple[tuple[float, float], ...]
+    lines: list[bytes] = field(default_factory=list)
+    ready: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """A strip of `height` to be filled with all items, `seconds` long; a width of `enough` ends the search."""
+def solve(request: Request, told: Told, command: Sequence[str] = ENGINE, ready_s: float = READY_S) -> None:
+    """Have a problem searched for its seconds; what the engine says is in `told`, also after Ctrl-C.
 
-    height: float
-    seconds: int
-    seed: int
-    enough: float
-    items: tuple[Item, ...]
-
-    def line(self) -> bytes:
-        """Return the request as one line of JSON."""
-        items = [{"id": one.id, "count": one.count, "angles": one.angles, "points": one.points} for one in self.items]
-        fields = {"height": self.height, "seconds": self.seconds, "seed": self.seed, "enough": self.enough}
-        return json.dumps({**fields, "items": items}).encode() + b"\n"
-
-
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """Where the engine puts a part: turned about the origin of its polygon, then moved."""
-
-    id: str
-    angle_deg: float
-    x: float
-    y: float
-
-
-def solve(request: Request, wall_s: float, command: Sequence[str] = ENGINE) -> tuple[Spot, ...]:
-    """Return the narrowest layout the engine finds within the time.
-
-    Raises EngineError if there is none.
+    Raises EngineError if it cannot be started.
     """
     try:
         child = subprocess.Popen(
@@ -74,12 +53,11 @@ def solve(request: Request, wall_s: float, command: Sequence[str] = ENGINE) -> t
         )
     except OSError as error:
         raise EngineError(f"it could not be started: {error}") from error
-    answers: list[bytes] = []
-    talk = threading.Thread(target=_talk, args=(child, request.line(), answers), daemon=True)
+    talk = threading.Thread(target=_talk, args=(child, request_line(request), told), daemon=True)
+    start = monotonic()
     try:
         talk.start()
-        end = monotonic() + wall_s
-        while talk.is_alive() and monotonic() < end:
+        while talk.is_alive() and monotonic() < _end(told, start, request.seconds, ready_s):
             talk.join(POLL_S)
     finally:
         child.kill()
@@ -88,10 +66,14 @@ def solve(request: Request, wall_s: float, command: Sequence[str] = ENGINE) -> t
         for pipe in (child.stdin, child.stdout):
             if pipe:
                 pipe.close()
-    return _best(answers, {one.id: one.count for one in request.items})
 
 
-def _talk(child: "subprocess.Popen[bytes]", line: bytes, answers: list[bytes]) -> None:
+def _end(told: Told, start: float, seconds: float, ready_s: float) -> float:
+    """Return when the child is killed: its time counts from when it is ready."""
+    return start + ready_s if told.ready is None else told.ready + seconds + GRACE_S
+
+
+def _talk(child: "subprocess.Popen[bytes]", line: bytes, told: Told) -> None:
     """Write the request and collect the answers until the child ends."""
     if child.stdin is None or child.stdout is None:
         return
@@ -104,33 +86,47 @@ def _talk(child: "subprocess.Popen[bytes]", line: bytes, answers: list[bytes]) -
     pending = b""
     while block := child.stdout.read(1 << 16):
         *whole, pending = (pending + block).split(b"\n")
-        answers.extend(whole)
+        if told.ready is None and any(READY in one for one in whole):
+            told.ready = monotonic()
+        told.lines.extend(one for one in whole if READY not in one)
 
 
-def _best(answers: Sequence[bytes], wanted: dict[str, int]) -> tuple[Spot, ...]:
-    """Return the last layout that was told in full."""
-    if not answers:
-        raise EngineError("it ended, or ran out of time, without a layout")
-    error = "its answer makes no sense"
-    for answer in reversed(answers):
+def layouts(told: Told, request: Request) -> list[tuple[Spot, ...]]:
+    """Return the layouts that were told in full, the best (the last) first.
+
+    Raises EngineError if the engine failed, or said what makes no sense, and told none.
+    """
+    error, found = None, []
+    for line in reversed(told.lines):
         try:
-            read = json.loads(answer)
+            read = json.loads(line)
             if "error" in read:
                 error = str(read["error"])
                 continue
-            spots = tuple(Spot(str(id_), float(angle), float(x), float(y)) for id_, angle, x, y in read["placed"])
+            spots = tuple(as_spot(row) for row in read["placed"])
         except (ValueError, TypeError, KeyError):
+            error = "its answer makes no sense"
             continue
-        if _sensible(spots, wanted):
-            return spots
-    raise EngineError(error)
+        if _sensible(spots, request):
+            found.append(spots)
+        else:
+            error = "its answer makes no sense"
+    if told.ready is None and not found:
+        error = error or "it ended, or ran out of time, before it was ready"
+    if error is not None and not found:
+        raise EngineError(error)
+    return found
 
 
-def _sensible(spots: Sequence[Spot], wanted: dict[str, int]) -> bool:
-    """Return whether exactly what was asked for is placed, at finite places."""
-    count = dict.fromkeys(wanted, 0)
-    for spot in spots:
-        if spot.id not in count or not all(map(isfinite, (spot.angle_deg, spot.x, spot.y))):
-            return False
-        count[spot.id] += 1
-    return count == wanted
+def _sensible(spots: Sequence[Spot], request: Request) -> bool:
+    """Return whether every item is placed, as one of its kinds, in a bin that there is and where it may lie."""
+    kinds, items, bins = request.problem.kinds, request.problem.items, request.problem.bins
+    return len(spots) == len(items) and all(
+        0 <= spot.bin < len(bins) and spot.kind in (item.kind, item.other) and _may_lie(kinds[spot.kind], spot.bin)
+        for spot, item in zip(spots, items, strict=True)
+    )
+
+
+def _may_lie(kind: Kind, bin_: int) -> bool:
+    """Return whether a kind may lie in a bin in any angle."""
+    return kind.regions[bin_] != NOWHERE and bool(kind.spans[bin_])

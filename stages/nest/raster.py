@@ -6,26 +6,29 @@ is taken, in the angle where the right end comes out least; then the part is pus
 polygons, so that the grid leaves no gaps behind.  Holes of parts are free space.  No clock, no random numbers: counts
 are whole numbers, told apart at 1/2, so the rounding of the transform does not matter.
 
-Limits: what needs a place exact to the last micron is found by `boxes` only; one pass, no part is moved again.
+Where a bed has regions, cells that are not wholly in the region of a part's class are taken for it, and it is pushed
+against the rim of the region too.  A roll is filled within a length that its parts may need, and within more if it does
+not suffice.
+
+Limits: what needs a place exact to the last micron, up to two cells on each side, is found by `boxes` only; one pass,
+no part is moved again.
 
 Source: the correlation picture is the discrete form of the no-fit polygon; J. A. Bennell, J. F. Oliveira, "The geometry
 of nesting problems: a tutorial", European Journal of Operational Research 184 (2008) 397-415, section 2.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
-from shapely import STRtree
+from shapely import STRtree, box
 
-from stages.geometry.arrays import Array, Points2, Values
-from stages.nest.blank import Bed, Placed, Turned, core_at, edges, polygon_at
+from stages.nest.blank import Bed, Placed, Region, Turned, as_region, core_at, edges, polygon_at, polygons
+from stages.nest.cells import Cells, cover, framed, widest_gap
 from stages.nest.slide import NOTHING, Outline, moved, together, way_down, way_left
 
-Numbers = NDArray[np.int64]
-Cells = NDArray[np.bool_]
 Picture = NDArray[np.complex64]
 
 FEWEST_CELLS, MOST_CELLS = 20_000, 160_000
@@ -37,8 +40,8 @@ WORK = 12_000_000
 FREE = 0.5
 """Fewer common cells than this are none: counts are whole numbers, single precision errs by some 1e-2."""
 
-INWARD = 1e-6
-"""Edges on a grid line count for the cell inside; in cells."""
+HALF_CELL = float(np.sqrt(0.5))
+"""A point is at most this far, in cells, from the middle of its cell."""
 
 PUSHES = 3
 """Down and left, this often: parts seldom move after the second time."""
@@ -47,13 +50,22 @@ PUSH_CELLS = 3.0
 """How far a part is pushed: the grid costs up to two cells, beyond lies free space that the search has refused."""
 
 
+LONGER = 1.6
+"""A roll is filled within this many times the length that the area of the parts asks for, and so on if need be."""
+
+
 @dataclass(slots=True)
 class Board:
-    """A sheet while it is filled: what lies on it, its cells, and the left end known to be the least for each shape."""
+    """A sheet while it is filled: what lies on it, its cells, and the left end known to be the least for each shape.
+
+    blocked, rims: for each class of parts, the cells that are not wholly in its region, and the edges of the region.
+    """
 
     bed: Bed
     cell_mm: float
     cells: Cells
+    blocked: Sequence[Cells | None]
+    rims: Sequence[Outline]
     placed: list[Placed] = field(default_factory=list)
     outlines: list[Outline] = field(default_factory=list)
     pictures: dict[int, Picture] = field(default_factory=dict)
@@ -64,11 +76,40 @@ def fill_raster(
     bed: Bed, queue: Sequence[tuple[int, tuple[Turned, ...]]], already: Sequence[Placed] = ()
 ) -> list[Placed]:
     """Return what lay on the bed already and the copies of the queue (how many, in which angles) that find room."""
+    if not queue or min(bed.width_mm, bed.height_mm) <= 0.0:
+        return list(already)
+    if not bed.sheet.is_roll:
+        return _fill(bed, queue, already)
+    wanted = len(already) + sum(count for count, _ in queue)
+    length = _first_length(bed, queue, already)
+    while len(found := _fill(cut_off(bed, length), queue, already)) < wanted and length < bed.width_mm:
+        length *= LONGER
+    return found
+
+
+def _first_length(bed: Bed, queue: Sequence[tuple[int, tuple[Turned, ...]]], already: Sequence[Placed]) -> float:
+    """Return a length of a roll in which all copies should find room: by their area, and the longest by itself."""
+    area = sum((count * turns[0].shape.area for count, turns in queue if turns), start=0.0)
+    longest = max((min(one.width_mm for one in turns) for _, turns in queue if turns), default=0.0)
+    used = max((one.right_mm for one in already), default=0.0)
+    return max(LONGER * area / max(bed.height_mm, 1.0), longest, used) + longest
+
+
+def cut_off(bed: Bed, length_mm: float) -> Bed:
+    """Return the left end of a bed."""
+    if length_mm >= bed.width_mm:
+        return bed
+    end = box(0.0, 0.0, length_mm, bed.height_mm)
+    regions = tuple(None if one is None else as_region(polygons(one.intersection(end))) for one in bed.regions)
+    return replace(bed, width_mm=length_mm, regions=regions)
+
+
+def _fill(bed: Bed, queue: Sequence[tuple[int, tuple[Turned, ...]]], already: Sequence[Placed]) -> list[Placed]:
     board = empty_board(bed, sum(count for count, _ in queue))
     for placed in already:
         _lay(board, placed)
     for count, turns in queue:
-        for _ in range(count):
+        for _ in range(0 if not turns or _hopeless(board, turns) else count):
             if not _place_one(board, turns):
                 break
     return board.placed
@@ -77,15 +118,24 @@ def fill_raster(
 def empty_board(bed: Bed, copies: int) -> Board:
     """Return a board with nothing on it, its grid the finer the fewer copies there are."""
     wanted = int(np.clip(WORK / max(copies, 1), FEWEST_CELLS, MOST_CELLS))
-    cell = np.sqrt(bed.width_mm * bed.height_mm / wanted)
+    cell = float(np.sqrt(bed.width_mm * bed.height_mm / wanted))
     rows, columns = int(np.ceil(bed.height_mm / cell)), int(np.ceil(bed.width_mm / cell))
     size = (fft.next_fast_len(rows, real=True), fft.next_fast_len(columns, real=True))
-    return Board(bed, float(cell), np.zeros(size, dtype=np.bool_))
+    blocked = [None if region is None else _outside(bed, region, cell, size) for region in bed.regions]
+    rims = [NOTHING if region is None else Outline(*edges(region)) for region in bed.regions]
+    return Board(bed, cell, np.zeros(size, dtype=np.bool_), blocked, rims)
+
+
+def _outside(bed: Bed, region: Region, cell_mm: float, size: tuple[int, int]) -> Cells:
+    """Return the cells of a bed that are not wholly in a region."""
+    rest = box(0.0, 0.0, bed.width_mm, bed.height_mm).difference(region)
+    return framed(cover(edges(rest), cell_mm), size)
 
 
 def _place_one(board: Board, turns: Sequence[Turned]) -> bool:
     """Lay one copy in its best angle; whether there was room."""
-    sheet: Picture = fft.rfft2(board.cells.astype(np.float32))
+    taken = _taken(board, _level(board, turns[0]))
+    sheet: Picture = fft.rfft2(taken.astype(np.float32))
     best: tuple[float, float, float, int] | None = None
     for number, one in enumerate(turns):
         bound = board.least.get(id(one), 0) * board.cell_mm + one.width_mm
@@ -100,6 +150,24 @@ def _place_one(board: Board, turns: Sequence[Turned]) -> bool:
         return False
     _lay(board, _at_rest(board, Placed(turns[best[3]], best[2], best[1])))
     return True
+
+
+def _taken(board: Board, level: int) -> Cells:
+    """Return the cells that parts of a class cannot have."""
+    blocked = board.blocked[level]
+    return board.cells if blocked is None else board.cells | blocked
+
+
+def _hopeless(board: Board, turns: Sequence[Turned]) -> bool:
+    """Return whether there is surely no room: nowhere as much as the largest circle in the part needs."""
+    rows, columns = (int(np.ceil(size / board.cell_mm)) for size in (board.bed.height_mm, board.bed.width_mm))
+    gap = widest_gap(_taken(board, _level(board, turns[0]))[:rows, :columns])
+    return turns[0].blank.inner_radius_mm > (gap + HALF_CELL) * board.cell_mm
+
+
+def _level(board: Board, one: Turned) -> int:
+    """Return the class of a part on the bed."""
+    return board.bed.level(one.blank.pattern.quality)
 
 
 def _leftmost(board: Board, sheet: Picture, one: Turned) -> tuple[int, int] | None:
@@ -124,24 +192,30 @@ def _picture(board: Board, one: Turned) -> Picture:
     """Return the transform of a shape, conjugated for the correlation."""
     if id(one) not in board.pictures:
         rows, columns = board.cells.shape
-        covered = cover(one.outline, board.cell_mm)[:rows, :columns]
-        cells = np.zeros((rows, columns), dtype=np.float32)
-        cells[: len(covered), : covered.shape[1]] = covered
-        board.pictures[id(one)] = np.conj(fft.rfft2(cells))
+        cells = framed(cover(one.outline, board.cell_mm), (rows, columns))
+        board.pictures[id(one)] = np.conj(fft.rfft2(cells.astype(np.float32)))
     return board.pictures[id(one)]
 
 
 def _at_rest(board: Board, placed: Placed) -> Placed:
     """Return the part pushed down and left until it touches, or as it was if that would overlap."""
     outline = Outline(*placed.turned.outline)
-    fixed = _near(board, placed)
+    level = _level(board, placed.turned)
+    fixed = together(_near(board, placed), board.rims[level])
     x, y = placed.x, placed.y
     reach = PUSH_CELLS * board.cell_mm
     for _ in range(PUSHES):
         down = way_down(moved(outline, x, y), fixed, min(reach, y))
         left = way_left(moved(outline, x, y - down), fixed, min(reach, x))
         x, y = x - left, y - down
-    return Placed(placed.turned, x, y) if free_at(board.placed, placed.turned, x, y) else placed
+    rested = Placed(placed.turned, x, y)
+    free = free_at(board.placed, placed.turned, x, y) and in_region(board.bed.regions[level], rested)
+    return rested if free else placed
+
+
+def in_region(region: Region | None, placed: Placed) -> bool:
+    """Return whether a part lies in a region of a bed; the whole box is not asked."""
+    return region is None or region.contains(core_at(placed.turned, placed.x, placed.y))
 
 
 def _near(board: Board, placed: Placed) -> Outline:
@@ -174,59 +248,4 @@ def _lay(board: Board, placed: Placed) -> None:
     start, end = edges(polygon_at(placed))
     board.placed.append(placed)
     board.outlines.append(Outline(start, end))
-    covered = cover((start, end), board.cell_mm)
-    covered = covered[: board.cells.shape[0], : board.cells.shape[1]]
-    board.cells[: len(covered), : covered.shape[1]] |= covered
-
-
-def cover(outline: tuple[Points2, Points2], cell_mm: float) -> Cells:
-    """Return the cells, counted from the origin, that a polygon with its inside to the left touches."""
-    start, end = outline[0] / cell_mm, outline[1] / cell_mm
-    size = np.ceil(np.maximum(start.max(axis=0), 0.0)).astype(np.int64) + 1
-    cells = _inside(start, end, (int(size[1]), int(size[0])))
-    edge, share = _stretches(start, end)
-    along = end - start
-    inward = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    inward *= INWARD / np.maximum(np.linalg.norm(inward, axis=1), INWARD)[:, None]
-    point = start[edge] + share[:, None] * along[edge] + inward[edge]
-    column, row = np.clip(np.floor(point), 0, size - 1).astype(np.int64).T
-    cells[row, column] = True
-    return cells
-
-
-def _stretches(start: Points2, end: Points2) -> tuple[Numbers, Array]:
-    """Return, for every stretch of an edge between two grid lines, the edge and the share of the way to its middle."""
-    edge = [np.arange(start.shape[0]), np.arange(start.shape[0])]
-    share = [np.zeros(start.shape[0]), np.ones(start.shape[0])]
-    for axis in range(2):
-        low, high = np.minimum(start[:, axis], end[:, axis]), np.maximum(start[:, axis], end[:, axis])
-        which, line = _whole_numbers(np.floor(low) + 1.0, np.ceil(high))
-        edge.append(which)
-        share.append((line - start[which, axis]) / (end - start)[which, axis])
-    every, at = np.concatenate(edge), np.concatenate(share)
-    order = np.lexsort((at, every))
-    every, at = every[order], at[order]
-    same = every[1:] == every[:-1]
-    return every[:-1][same], ((at[1:] + at[:-1]) / 2.0)[same]
-
-
-def _whole_numbers(low: Values, high: Values) -> tuple[Numbers, Array]:
-    """Return the whole numbers from each low up to and without its high: index of the pair, number."""
-    count = np.maximum(high - low, 0.0).astype(np.int64)
-    which = np.repeat(np.arange(low.size), count)
-    return which, low[which] + (np.arange(which.size) - np.repeat(np.cumsum(count) - count, count))
-
-
-def _inside(start: Points2, end: Points2, size: tuple[int, int]) -> Cells:
-    """Return the cells whose middle lies inside, by the parity of crossings along each row."""
-    low, high = np.minimum(start[:, 1], end[:, 1]) - 0.5, np.maximum(start[:, 1], end[:, 1]) - 0.5
-    which, line = _whole_numbers(np.ceil(low), np.ceil(high))
-    row = line.astype(np.int64)
-    share = (line + 0.5 - start[which, 1]) / (end - start)[which, 1]
-    x = start[which, 0] + share * (end - start)[which, 0]
-    column = np.ceil(x - 0.5).astype(np.int64)
-    crossings = np.zeros(size, dtype=np.int64)
-    keep = (row >= 0) & (row < size[0]) & (column < size[1])
-    np.add.at(crossings, (row[keep], np.maximum(column[keep], 0)), 1)
-    inside: Cells = np.cumsum(crossings, axis=1) % 2 == 1
-    return inside
+    board.cells |= framed(cover((start, end), board.cell_mm), board.cells.shape)

@@ -1,82 +1,40 @@
-"""Fill several sheets better than the first placement does, with a strip packing engine and within a time limit.
+"""Look for a better plan than the first placement: fewer or cheaper sheets, then the last of them used less.
 
-Sheet by sheet: take an even share of what is left, large and small parts alike, have it packed as a strip as high as
-the sheet, keep what lies within its width, top up with true shapes what room is left; then ask for more or fewer
-parts, until the time of this sheet is over.  The best filling is kept.  The last sheet is packed as short as possible.
-While there is time the whole is done again, for one sheet less than the best so far.
-
-The engine computes in single precision and refuses parts exactly as high as the strip.  So its polygons grow by a
-margin above that rounding, parts that high are laid first and the engine gets the rest of the sheet, and every place
-it gives is tested again before it is used.  The clock is read here and in `child` and nowhere else in the stages.
+The task becomes a problem of shapes and bins for `separation`, which runs in a process of its own on all cores it is
+given.  What comes back is a plan like any other, and is certified like any other.  Sheets of one kind that are not
+limited are offered as often as the best plan so far has them; of several kinds any mixture may turn out better.
 """
 
-from collections.abc import Sequence
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from time import monotonic
 from typing import NamedTuple
 
 import numpy as np
-from shapely import affinity
+from shapely import Polygon, affinity
 
 from stages.geometry.arrays import Vector2
 from stages.geometry.rigid import Rigid2, apply
-from stages.nest.blank import Bed, Blank, Placed, Turned, turned
-from stages.nest.child import ENGINE, EngineError, Item, Request, Spot, solve
+from stages.nest.blank import Bed, Blank, Placed, Region, turned
+from stages.nest.child import ENGINE, EngineError, Told, layouts, solve
 from stages.nest.fit import Kind
-from stages.nest.raster import fill_raster, free_at
-from stages.nest.sheets import (
-    Counts,
-    Filled,
-    Plan,
-    Task,
-    area_of,
-    less,
-    next_sheet,
-    ordered,
-    size,
-    used_share,
-    waiting,
-    without_one,
-)
+from stages.nest.separation import problem as given
+from stages.nest.separation.problem import NOWHERE, RECTANGLE, Item, Problem, Spot
+from stages.nest.separation.wire import Request
+from stages.nest.sheets import Counts, Filled, Plan, Task, less, used_mm
+from stages.nest.turns import ANGLE_TOLERANCE_DEG, Turns, contains
 
-MARGIN_SHARE = 2e-6
-"""The engine's polygons grow by this share of the sheet: its single precision errs by 1e-7 of a coordinate or so."""
+MOST_THREADS = 8
+"""More threads find little more, as they share one best layout."""
 
-TOO_HIGH_SHARE = 2e-4
-"""Parts nearer than this share to the height of the strip make the engine panic; it wants 1e-4."""
+MOST_BINS = 40
+"""So many sheets are offered, or as many as the best plan has: those first, then others."""
 
-LEAST_RUN_S = 1.0
-"""The engine counts whole seconds."""
+MANY = 400
+"""Above so many copies every pair of them is too much to keep: the first placement is final."""
 
-RUNS_PER_SHEET = 2
-"""The time of a sheet is meant for so many runs: the wanted filling is approached in steps."""
-
-GRACE_S = 0.5
-"""What a run may take beyond its seconds before it is killed; it has told its layouts by then."""
-
-MORE, FULL = 0.03, 1.0
-"""Step of the wanted filling, in shares of the sheet, after a run that placed all; and what is never wanted."""
-
-WORSE_SHARE = 0.05
-"""An even mix of parts may fill a sheet this much less than large parts first: what follows is easier for it."""
-
-PASS_SHARE, LEAST_SHEET_S = 0.5, 5.0
-"""A pass over all sheets takes this share of the time that is left, and not less than these seconds a sheet."""
-
-LEAST_WIDTH_SHARE = 0.2
-"""Of a sheet with less width than this left beside the highest parts, the engine makes nothing better."""
-
-
-@dataclass(slots=True)
-class Clock:
-    """When the search must end."""
-
-    end: float
-
-    @property
-    def left_s(self) -> float:
-        """Seconds that are left."""
-        return self.end - monotonic()
+QUARTER_DEG = 90.0
+ANY_SPAN = ((0.0, 360.0),)
 
 
 @dataclass(slots=True)
@@ -90,197 +48,210 @@ class Engine:
     interrupted: bool = False
 
 
-class Wish(NamedTuple):
-    """What a sheet is to be filled with, as a share of its area, and by when."""
+class Hand(NamedTuple):
+    """One kind of the problem: a lot in one of its hands; `middle` of its shape in the flat frame, mirrored already."""
 
-    share: float
-    clock: Clock
-
-
-class Run(NamedTuple):
-    """One run of the engine: on which bed, for how long, and the width that is enough."""
-
-    bed: Bed
-    seconds: float
-    enough_mm: float
+    lot: Kind
+    blank: Blank
+    shape: Polygon
+    middle: Vector2
 
 
-def search_plan(task: Task, first: Plan, time_limit_s: float, engine: Engine) -> Plan:
-    """Return the best plan found within the time, aiming at one sheet less each time; it is not certified.
+class Posed(NamedTuple):
+    """A problem with what its numbers stand for: hands by kind, beds by bin, what was placed from outside by item."""
 
-    Ctrl-C ends the search early, with the best plan so far.
+    request: Request
+    hands: Sequence[Hand]
+    beds: Sequence[Bed]
+    kept: Sequence[Placed | None]
+
+
+def search_plans(task: Task, first: Plan, time_limit_s: float, engine: Engine) -> list[Plan]:
+    """Return the plans found within the time, the best first; none of them is certified.
+
+    Ctrl-C ends the search early, with what was found so far.
     """
-    clock, best = Clock(monotonic() + time_limit_s), first
-    fewest = least_sheets(task)
-    while clock.left_s >= LEAST_RUN_S and not engine.failures:
-        aim = max(len(best.sheets) - 1, fewest)
-        one_pass = Clock(monotonic() + max(clock.left_s * PASS_SHARE, min(clock.left_s, LEAST_SHEET_S * aim)))
-        try:
-            best = min(best, _pass(task, aim, one_pass, engine), key=lambda plan: plan.cost)
-        except KeyboardInterrupt:
-            engine.interrupted = True
-            break
-        if len(best.sheets) == fewest and not best.left:
-            break
-    return best
-
-
-def least_sheets(task: Task) -> int:
-    """Return how many of the largest sheets the area of the parts needs at least."""
-    largest = max((bed.width_mm * bed.height_mm for bed in task.beds), default=np.inf)
-    return max(int(np.ceil(area_of(task.kinds, task.counts) / largest)), 1)
-
-
-def _pass(task: Task, aim: int, clock: Clock, engine: Engine) -> Plan:
-    """Return all copies spread over sheets, `aim` of them if that can be."""
-    queue, left = ordered(task, size), less(task.counts, ())
-    stock = {bed.stock: bed.sheet.quantity for bed in task.beds}
-    sheets: list[Filled] = []
-    while left:
-        base = next_sheet(queue, [bed for bed in task.beds if stock[bed.stock] != 0], left, fill_raster)
-        if base is None:
-            break
-        ahead = max(aim - len(sheets), 1)
-        sheet_clock = Clock(monotonic() + clock.left_s / ahead)
-        if less(left, base.placed):
-            even = min(area_of(queue, left) / ahead / area(base.bed), FULL)
-            sheets.append(_improved(base, queue, left, Wish(even, sheet_clock), engine))
-        else:
-            sheets.append(_shortened(base, queue, left, sheet_clock, engine))
-        left = less(left, sheets[-1].placed)
-        stock = without_one(stock, base.bed.stock)
-    return Plan(tuple(sheets), left)
-
-
-def _improved(base: Filled, queue: Sequence[Kind], left: Counts, wish: Wish, engine: Engine) -> Filled:
-    """Return the sheet filled with the wished share of its area, and with more as far as the engine finds room."""
-    bed, share, clock = base.bed, wish.share, wish.clock
-    low, high, best = 0.0, FULL, None
-    run_s = max(clock.left_s / RUNS_PER_SHEET, LEAST_RUN_S)
-    tried: list[Counts] = []
-    while clock.left_s >= LEAST_RUN_S and not engine.failures:
-        chosen = choose(bed, queue, left, share)
-        found = (
-            None
-            if chosen in tried
-            else _packed(Run(bed, min(run_s, clock.left_s), bed.width_mm), queue, chosen, engine)
-        )
-        if found is None:
-            break
-        tried.append(chosen)
-        topped = Filled(bed, tuple(fill_raster(bed, waiting(queue, bed, less(left, found)), found)))
-        best = topped if best is None else max(best, topped, key=filling)
-        if less(chosen, found):
-            high = share
-        else:
-            low = max(share, filling(topped))
-        between = (max(low, filling(best)) + high) / 2.0
-        share = min(low + MORE, between) if low else between
-    return best if best is not None and filling(best) > filling(base) - WORSE_SHARE else base
-
-
-def _shortened(base: Filled, queue: Sequence[Kind], left: Counts, clock: Clock, engine: Engine) -> Filled:
-    """Return the last sheet, which takes all that is left, packed as short as the engine can."""
-    if clock.left_s < LEAST_RUN_S or engine.failures:
-        return base
-    found = _packed(Run(base.bed, clock.left_s, 0.0), queue, left, engine)
-    if found is None or less(left, found):
-        return base
-    return min(base, Filled(base.bed, tuple(found)), key=used_share)
-
-
-def area(bed: Bed) -> float:
-    """Return the area of a bed in mm2."""
-    return bed.width_mm * bed.height_mm
-
-
-def filling(sheet: Filled) -> float:
-    """Return the area of the parts as a share of the bed."""
-    return sum(placed.turned.blank.area_mm2 for placed in sheet.placed) / area(sheet.bed)
-
-
-def choose(bed: Bed, queue: Sequence[Kind], left: Counts, share: float) -> dict[int, int]:
-    """Return of each part that fits its portion of what is left, as many as fill a share of the bed.
-
-    Rounded so that the area never strays from the portion by more than half a part: a sheet gets large and small ones
-    as they come, and the small ones that fill the gaps are not used up first.
-    """
-    fitting = [one for one in queue if left.get(one.blank.part, 0) and one.on(bed)]
-    portion = min(share * area(bed) / max(area_of(fitting, left), 1.0), 1.0)
-    chosen: dict[int, int] = {}
-    due = 0.0
-    for one in fitting:
-        each, part = one.blank.area_mm2, one.blank.part
-        due += portion * left[part] * each
-        count = int(np.clip(round(due / each), 0, left[part]))
-        due -= count * each
-        chosen[part] = count
-    return {part: count for part, count in chosen.items() if count}
-
-
-def _packed(run: Run, queue: Sequence[Kind], counts: Counts, engine: Engine) -> list[Placed] | None:
-    """Return what of the parts lies well within the bed after one run of the engine; None if it cannot be asked."""
-    bed = run.bed
-    flat = [one for one in queue if counts.get(one.blank.part) and _engine_angles(one, bed)]
-    high = [one for one in queue if counts.get(one.blank.part) and not _engine_angles(one, bed)]
-    start = fill_raster(bed, [(counts[one.blank.part], one.on(bed)) for one in high if one.on(bed)]) if high else []
-    used = max((placed.right_mm for placed in start), default=0.0)
-    if not flat or bed.width_mm - used < LEAST_WIDTH_SHARE * bed.width_mm:
-        return None
-    margin = MARGIN_SHARE * max(bed.width_mm, bed.height_mm)
-    items = tuple(_item(one, bed, counts[one.blank.part], margin) for one in flat)
-    whole = max(int(run.seconds), 1)
+    posed = pose(task, first, time_limit_s, engine.seed)
+    if posed is None:
+        return []
+    told = Told()
     engine.runs += 1
-    request = Request(bed.height_mm, whole, engine.seed + engine.runs, max(run.enough_mm - used, 0.0), items)
     try:
-        spots = solve(request, whole + GRACE_S, engine.command)
+        solve(posed.request, told, engine.command)
+    except KeyboardInterrupt:
+        engine.interrupted = True
     except EngineError as error:
         engine.failures.append(str(error))
+        return []
+    try:
+        return [plan_of(spots, posed) for spots in layouts(told, posed.request)[:2]]
+    except EngineError as error:
+        if not engine.interrupted:
+            engine.failures.append(str(error))
+        return []
+
+
+def pose(task: Task, first: Plan, seconds: float, seed: int) -> Posed | None:
+    """Return a task as a problem that starts from a plan; None if there is nothing to be searched."""
+    copies = sum(task.counts.values()) + sum(len(sheet.placed) for sheet in task.start)
+    beds = bins_for(task, first)
+    if copies > MANY or not beds or not sum(task.counts.values()):
         return None
-    by_id = {str(one.blank.part): one for one in flat}
-    return settled(bed, [_placed(by_id[spot.id], spot, used) for spot in spots], start, 2.0 * margin)
+    hands = [hand_of(lot, blank) for lot in task.kinds for blank in lot.hands]
+    number = {id(hand.blank): k for k, hand in enumerate(hands)}
+    regions: list[Region] = []
+    kinds = tuple(_kind(hand, beds, regions, _angle_of(hand, first) if task.one_direction else None) for hand in hands)
+    rows = list(_rows(first, beds, number)) + list(_left(first.left, task, number))
+    items = tuple(Item(kind, _other(hands[kind], number), kept is not None) for kind, kept, _ in rows)
+    bins = tuple((bed.width_mm, bed.height_mm) for bed in beds)
+    problem = Problem(kinds, items, bins, tuple(regions))
+    start = tuple(_spot(kind, placed, hands, bin_) for kind, _, (bin_, placed) in rows)
+    request = Request(
+        problem, start, not first.left, seconds, min(os.cpu_count() or 1, MOST_THREADS), seed,
+        tuple(bed.cost for bed in beds), tuple(bed.area_mm2 for bed in beds), tuple(bed.plain for bed in beds),
+    )  # fmt: skip
+    return Posed(request, hands, beds, [kept for _, kept, _ in rows])
 
 
-def _engine_angles(one: Kind, bed: Bed) -> tuple[Turned, ...]:
-    """Return the angles in which a part fits the bed and is not as high as it."""
-    return tuple(way for way in one.on(bed) if way.height_mm <= bed.height_mm * (1.0 - TOO_HIGH_SHARE))
+def bins_for(task: Task, first: Plan) -> list[Bed]:
+    """Return the sheets that are offered: those of the plan in its order, then others there are."""
+    beds = [sheet.bed for sheet in first.sheets]
+    used = {bed.stock: sum(one.stock == bed.stock for one in beds) for bed in task.beds}
+    alone = len(task.beds) == 1 and not first.left
+    for bed in task.beds:
+        if alone or (bed.sheet.is_roll and used[bed.stock]):
+            continue
+        most = len(first.sheets) + 1 if bed.sheet.quantity is None else bed.sheet.quantity
+        beds += [bed] * max(min(most, len(first.sheets) + 1) - used[bed.stock], 0)
+    return beds[: max(MOST_BINS, len(first.sheets))]
 
 
-def _item(one: Kind, bed: Bed, count: int, margin_mm: float) -> Item:
-    """Return a part as the engine takes it: its outline only, grown by the margin, about its middle."""
-    angles = None if one.blank.angles is None else tuple(way.angle_deg for way in _engine_angles(one, bed))
-    grown = one.blank.shape.buffer(margin_mm, join_style="mitre")
-    x, y = middle(one.blank)
-    corners = affinity.translate(grown, -x, -y).exterior.coords[:-1]
-    return Item(str(one.blank.part), count, angles, tuple((float(px), float(py)) for px, py, *_ in corners))
+def hand_of(lot: Kind, blank: Blank) -> Hand:
+    """Return one hand of a lot with its shape about its middle.
 
-
-def middle(blank: Blank) -> Vector2:
-    """Return the middle of the box of the grown part in its flat frame: coordinates stay small about it."""
-    low_x, low_y, high_x, high_y = blank.shape.bounds
-    return np.array([(low_x + high_x) / 2.0, (low_y + high_y) / 2.0])
-
-
-def _placed(one: Kind, spot: Spot, used_mm: float) -> Placed:
-    """Return the part where the engine put it, its angle made the exact one of its list."""
-    way = turned(one.blank, spot.angle_deg % 360.0) if one.blank.angles is None else _nearest(one, spot.angle_deg)
-    shift = apply(Rigid2(angle_deg=way.angle_deg), middle(one.blank))
-    return Placed(way, spot.x - float(shift[0]) - way.dx + used_mm, spot.y - float(shift[1]) - way.dy)
-
-
-def _nearest(one: Kind, angle_deg: float) -> Turned:
-    return min(one.turns, key=lambda way: abs((way.angle_deg - angle_deg + 180.0) % 360.0 - 180.0))
-
-
-def settled(bed: Bed, wished: Sequence[Placed], start: Sequence[Placed], shift_mm: float) -> list[Placed]:
-    """Return what lay there and those of the wished that lie within the bed and on nothing else, from the left.
-
-    What leaves the bed by no more than the shift is moved in.
+    Where it is only ever turned by quarters its shape is cut to the exact box, so that what fits exactly does.
     """
-    kept = list(start)
-    for one in sorted(wished, key=lambda placed: (placed.x, placed.y)):
-        x = float(np.clip(one.x, 0.0, max(bed.width_mm - one.turned.width_mm, 0.0)))
-        y = float(np.clip(one.y, 0.0, max(bed.height_mm - one.turned.height_mm, 0.0)))
-        if max(abs(x - one.x), abs(y - one.y)) <= shift_mm and free_at(kept, one.turned, x, y):
-            kept.append(Placed(one.turned, x, y))
-    return kept
+    spans = [turns.spans for turns in (one[lot.hands.index(blank)] for one in lot.spans)]
+    square = all(
+        span is not None and all(low == high and low % QUARTER_DEG == 0.0 for low, high in span) for span in spans
+    )
+    shape = blank.shape
+    if square:
+        way = turned(blank, 0.0)
+        shape = affinity.translate(way.shape, -way.dx, -way.dy)
+    low_x, low_y, high_x, high_y = shape.bounds
+    middle = np.array([(low_x + high_x) / 2.0, (low_y + high_y) / 2.0])
+    return Hand(lot, blank, affinity.translate(shape, -middle[0], -middle[1]), middle)
+
+
+def _kind(hand: Hand, beds: Sequence[Bed], regions: list[Region], only: float | None) -> given.Kind:
+    """Return a hand as a kind of the problem; regions that are new are added to the list."""
+    spans, numbers = [], []
+    for bed in beds:
+        turns = hand.lot.allowed(bed, hand.blank)
+        spans.append(spans_of(turns) if only is None else _alone(only, turns))
+        numbers.append(_region(bed.region(hand.blank.pattern.quality), regions))
+    return given.Kind(hand.shape, tuple(spans), tuple(numbers))
+
+
+def _alone(angle_deg: float, turns: Turns) -> tuple[tuple[float, float], ...]:
+    """Return one angle as the only one; none where it is not allowed."""
+    return ((angle_deg, angle_deg),) if contains(turns, angle_deg) else ()
+
+
+def spans_of(turns: Turns) -> tuple[tuple[float, float], ...]:
+    """Return the spans of allowed angles in degrees, any angle as one whole turn."""
+    return ANY_SPAN if turns.spans is None else turns.spans
+
+
+def _region(region: Region | None, regions: list[Region]) -> int:
+    if region is None:
+        return RECTANGLE
+    if region.is_empty:
+        return NOWHERE
+    known = next((k for k, one in enumerate(regions) if one is region), None)
+    if known is None:
+        regions.append(region)
+    return len(regions) - 1 if known is None else known
+
+
+def _angle_of(hand: Hand, first: Plan) -> float | None:
+    """Return the angle in which the plan has a hand, else the first in which it was tried."""
+    placed = (one.turned for sheet in first.sheets for one in sheet.placed)
+    return next((one.angle_deg for one in (*placed, *hand.lot.turns) if one.blank is hand.blank), None)
+
+
+Row = tuple[int, Placed | None, tuple[int, Placed | None]]
+"""The kind of an item, what it was placed by from outside, and the bin and place where it lies; bin -1: nowhere yet."""
+
+
+def _rows(first: Plan, beds: Sequence[Bed], number: dict[int, int]) -> Iterable[Row]:
+    for bin_, sheet in enumerate(first.sheets[: len(beds)]):
+        for placed in sheet.placed:
+            yield number[id(placed.turned.blank)], placed if placed.given is not None else None, (bin_, placed)
+
+
+def _left(left: Counts, task: Task, number: dict[int, int]) -> Iterable[Row]:
+    for lot in task.kinds:
+        for _ in range(left.get(lot.blank.part, 0)):
+            yield number[id(lot.blank)], None, (-1, None)
+
+
+def _other(hand: Hand, number: dict[int, int]) -> int:
+    """Return the kind that a copy has when turned over; its own if it is not."""
+    others = [blank for blank in hand.lot.hands if blank is not hand.blank]
+    return number[id(others[0])] if others else number[id(hand.blank)]
+
+
+def _spot(kind: int, placed: Placed | None, hands: Sequence[Hand], bin_: int) -> Spot:
+    """Return where an item lies in the plan."""
+    if placed is None:
+        return Spot(-1, kind, 0.0, 0.0, 0.0)
+    angle = placed.turned.angle_deg
+    shift = apply(Rigid2(angle_deg=angle), hands[kind].middle)
+    return Spot(
+        bin_, kind, angle, placed.x + placed.turned.dx + float(shift[0]), placed.y + placed.turned.dy + float(shift[1])
+    )
+
+
+def plan_of(spots: Sequence[Spot], posed: Posed) -> Plan:
+    """Return a layout of the engine as a plan; sheets in the order of use, the emptiest last."""
+    laid: list[list[Placed]] = [[] for _ in posed.beds]
+    for spot, kept in zip(spots, posed.kept, strict=True):
+        laid[spot.bin].append(kept or _placed(spot, posed.hands[spot.kind], posed.beds[spot.bin]))
+    sheets = [Filled(bed, tuple(placed)) for bed, placed in zip(posed.beds, laid, strict=True)]
+    begun = [sheet for sheet in sheets if any(one.given is not None for one in sheet.placed)]
+    others = [sheet for sheet in sheets if sheet.placed and sheet not in begun]
+    return Plan((*begun, *sorted(others, key=lambda sheet: -used_mm(sheet) / sheet.bed.width_mm)), {})
+
+
+def _placed(spot: Spot, hand: Hand, bed: Bed) -> Placed:
+    """Return a part where the engine put it, its angle made the exact one of its list."""
+    angle = _exact(spot.angle_deg, hand.lot.allowed(bed, hand.blank))
+    way = turned(hand.blank, angle)
+    shift = apply(Rigid2(angle_deg=angle), hand.middle)
+    return Placed(way, spot.x - float(shift[0]) - way.dx, spot.y - float(shift[1]) - way.dy)
+
+
+def _exact(angle_deg: float, turns: Turns) -> float:
+    """Return the angle of a list that is meant; of a span, the angle itself, within its ends."""
+    spans = spans_of(turns)
+    low, high = min(
+        spans,
+        key=lambda span: (
+            abs((angle_deg - span[0] + 180.0) % 360.0 - 180.0) if span[0] == span[1] else _outside(angle_deg, span)
+        ),
+    )
+    if low == high:
+        return low
+    past = (angle_deg - low) % 360.0
+    return (low + min(past, high - low)) % 360.0 if past < 360.0 - ANGLE_TOLERANCE_DEG else low
+
+
+def _outside(angle_deg: float, span: tuple[float, float]) -> float:
+    """Return how far an angle is outside a span, in degrees."""
+    past = (angle_deg - span[0]) % 360.0
+    return 0.0 if past <= span[1] - span[0] else min(past - (span[1] - span[0]), 360.0 - past)
+
+
+__all__ = ["Counts", "Engine", "less", "search_plans"]

@@ -19,9 +19,10 @@ from stages.geometry.flatmap import Development
 from stages.geometry.relaxed import relaxed
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric, Outcome, StageReport
-from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface
+from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface
 from stages.model.tolerances import CLASSES, Class, Tolerances, class_by_strain
 from stages.unroll import outline
+from stages.unroll.branched import unroll_branched
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.divide import division
 from stages.unroll.features import Features, on_strip
@@ -54,6 +55,8 @@ def unroll(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPattern | N
         return flatten(certificate.surface, tol)
     if isinstance(certificate.surface, MeshSurface):
         return flatten_mesh(certificate, tol)
+    if isinstance(certificate.surface, BranchedSurface):
+        return unroll_branched(certificate, certificate.surface, tol)
     surface = certificate.surface
     sheet = neutral(surface, tol)
     if any(finding.fatal for finding in sheet.findings):

@@ -99,7 +99,7 @@ def on_strip(
         elif here == ON and isinstance(one.spec, NotchSpec):
             notches.append(notch_on_strip(one, one.spec, knots))
         elif here == ON:
-            made = _image(one, flat, strip)
+            made = image(one, flat, strip)
             if surface.divided and _crosses_cut(made, development):
                 findings.append(_cut_through(one))
             elif isinstance(made, Finding):
@@ -173,7 +173,7 @@ def _crosses_cut(made: Flat | Finding, development: Development) -> bool:
     return any(bool(side.min() < 0.0 < side.max()) for side in sides)
 
 
-def _image(one: Placed, flat: FlatStrip, strip: Strip) -> Flat | Finding:
+def image(one: Placed, flat: FlatStrip, strip: Strip) -> Flat | Finding:
     """Return a feature through the flat map."""
     if one.at is None:
         return Flat(one, images(flat, one.curve))

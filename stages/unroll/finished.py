@@ -28,6 +28,10 @@ def finished(part: Part, made: Features, corners: Points2, tol: Tolerances) -> F
         rotations=_rotations(part.spec.rotations),
         thickness_mm=part.material.thickness_mm,
         density_kg_m3=part.material.density_kg_m3,
+        quality=part.spec.quality,
+        axis_deg=part.spec.axis_deg,
+        axis_band_deg=float(part.spec.grain_band),
+        pair=part.spec.pair,
     )
 
 

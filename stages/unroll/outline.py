@@ -44,7 +44,9 @@ def contour(exact: tuple[PlaneCurve, ...], chord_mm: float, name: str = "") -> C
 def label_place(outer: ArcPath, inner: tuple[ArcPath, ...], chord_mm: float) -> Vector2:
     """Return the point of the part that is farthest from its contours (to 1 % of the size), mm."""
     rings: list[Array] = [arcpath.polygon(path, accuracy=chord_mm) for path in (outer, *inner)]
-    area = shapely.make_valid(shapely.Polygon(rings[0], rings[1:]))
+    valid = shapely.get_parts(shapely.make_valid(shapely.Polygon(rings[0], rings[1:])))
+    # a contour that runs back along itself leaves lines beside the area
+    area = max(valid, key=lambda part: part.area)
     size = float(norm(np.ptp(rings[0], axis=0)))
     point = shapely.get_point(shapely.maximum_inscribed_circle(area, tolerance=size / 100.0), 0)
     return np.array([point.x, point.y])

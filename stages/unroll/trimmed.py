@@ -51,7 +51,7 @@ class Trimmed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Loop(ArrayValue):
+class FlatLoop(ArrayValue):
     """A loop of the pattern, counter-clockwise, and its figures, all positive.
 
     lengths: on the neutral surface and in the plane, mm.  areas: on the neutral surface, in the plane and on the
@@ -69,16 +69,12 @@ def trimmed(sheet: Neutral, development: Development, trim: Trim, chord_mm: floa
 
     Raises NoSolutionError where a curve is not resolved or its arcs do not keep the chord.
     """
-    knots = _knots(sheet.surface)
-    flat = FlatStrip(development.pieces, knots)
-    strips = Strip(sheet.surface.patches, knots), Strip(sheet.bent.surface.patches, _knots(sheet.bent.surface))
-    outer = _loop(sheet.surface.part.name, trim.outer, flat, strips)
-    inner = [_loop(f"hole-{i}", curves, flat, strips) for i, curves in enumerate(trim.inner, 1)]
-    before, after, given = (float(area) for area in outer.areas - sum(hole.areas for hole in inner))
+    outer, *inner = flat_loops(sheet, development, trim)
+    before, after, given = (float(area) for area in net_areas(outer, inner))
     return Trimmed(
         outline.contour(outer.edges, chord_mm, outer.name),
         tuple(outline.contour(backwards(hole.edges), chord_mm, hole.name) for hole in inner),
-        (_length_error([outer, *inner]), Metric("area_error", abs(after - before) / before)),
+        (length_error([outer, *inner]), Metric("area_error", abs(after - before) / before)),
         before,
         given,
         after,
@@ -86,19 +82,33 @@ def trimmed(sheet: Neutral, development: Development, trim: Trim, chord_mm: floa
     )
 
 
-def _knots(surface: RuledSurface) -> Values:
+def flat_loops(sheet: Neutral, development: Development, trim: Trim) -> tuple[FlatLoop, ...]:
+    """Return the loops of a trimmed part with their figures, the outer one first; not traced by lines and arcs."""
+    knots = knots_of(sheet.surface)
+    flat = FlatStrip(development.pieces, knots)
+    strips = Strip(sheet.surface.patches, knots), Strip(sheet.bent.surface.patches, knots_of(sheet.bent.surface))
+    outer = _loop(sheet.surface.part.name, trim.outer, flat, strips)
+    return (outer, *(_loop(f"hole-{i}", curves, flat, strips) for i, curves in enumerate(trim.inner, 1)))
+
+
+def net_areas(outer: FlatLoop, inner: Sequence[FlatLoop]) -> Array:
+    """Return the areas inside the outer loop without those of the holes: as `FlatLoop.areas`, mm2."""
+    return np.asarray(outer.areas - sum(hole.areas for hole in inner))
+
+
+def knots_of(surface: RuledSurface) -> Values:
     """Return the part's v at the ends of the patches."""
     return np.array([*(float(low) for low, _ in surface.spans), float(surface.spans[-1][1])])
 
 
-def _length_error(loops: Sequence[_Loop]) -> Metric:
+def length_error(loops: Sequence[FlatLoop]) -> Metric:
     """Return the largest relative difference of the length of a loop."""
     errors = {loop.name: abs(float(loop.lengths[1] / loop.lengths[0]) - 1.0) for loop in loops}
     worst = max(errors, key=lambda name: errors[name])
     return Metric("length_error", errors[worst], where={"edge": worst})
 
 
-def _loop(name: str, curves: Sequence[PlaneCurve], flat: FlatStrip, strips: tuple[Strip, Strip]) -> _Loop:
+def _loop(name: str, curves: Sequence[PlaneCurve], flat: FlatStrip, strips: tuple[Strip, Strip]) -> FlatLoop:
     """Return a loop with its figures; strips: the neutral surface, which the map is of, and the surface as given."""
     edges = images(flat, curves)
     about = edges[0].at(np.zeros(1))[0]
@@ -109,7 +119,7 @@ def _loop(name: str, curves: Sequence[PlaneCurve], flat: FlatStrip, strips: tupl
         given = figures[1] if strips[1].patches is strips[0].patches else _on_surface(edge, strips[1])[1][1]
         lengths += np.array([figures[0], flat_length])
         areas += np.array([figures[1], swept, given])
-    return _Loop(name, edges if areas[1] > 0.0 else backwards(edges), lengths, np.abs(areas))
+    return FlatLoop(name, edges if areas[1] > 0.0 else backwards(edges), lengths, np.abs(areas))
 
 
 def _on_surface(edge: MappedEdge, strip: Strip) -> tuple[Values, Array]:

@@ -13,10 +13,11 @@ import numpy as np
 from stages.errors import NoSolutionError
 from stages.geometry.meshfit import MOST_TRIANGLES
 from stages.model.report import Evidence, Metric, Outcome, StageReport, Where
-from stages.model.surface import Certificate, MeshSurface, Plate, RuledSurface, Surface
+from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
 from stages.verify import sampled
 from stages.verify.bending import bending
+from stages.verify.branched import branched
 from stages.verify.crossing import crossings
 from stages.verify.examined import Examined, examine
 from stages.verify.findings import rejection, singular_findings
@@ -34,6 +35,13 @@ def verify(surface: Surface, tol: Tolerances) -> Outcome[Certificate | None]:
         return _plate(surface)
     if isinstance(surface, MeshSurface):
         return _mesh(surface, tol)
+    if isinstance(surface, BranchedSurface):
+        return branched(surface, tol, _strip)
+    return _strip(surface, tol)
+
+
+def _strip(surface: RuledSurface, tol: Tolerances) -> Outcome[Certificate | None]:
+    """Return the certificate of a strip of ruled patches."""
     examined = [examine(patch, i) for i, patch in enumerate(surface.patches)]
     proved = all(one.proved for one in examined)
     bends, bent = bending(surface)

@@ -6,9 +6,10 @@ Against the exact development (files in `flat/`): two-sided distance, and the re
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import dist
+from math import dist, fsum, inf
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from stages.errors import NoSolutionError
 from stages.geometry.arcpath import ArcPath, area, bounds, length, lengths
@@ -18,8 +19,10 @@ from stages.geometry.hausdorff import hausdorff
 from stages.geometry.sampling import Resolved, length_and_area, resolved
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
+from stages.write.chains import JOINT_MM, Entity
+from stages.write.closing import MEET_MM, Closed, is_shared
 from stages.write.drawing import Drawing, Item, Label
-from stages.write.readback import Entity, ReadFile
+from stages.write.readback import ReadFile
 
 ROUND_TRIP = 1e-9
 """Relative: what ten decimals of a mm leave of lengths and areas."""
@@ -33,6 +36,12 @@ GRID_SHARE = 0.01
 QUADRATURE = 1e-9
 CLOSURE_MM = 0.01
 """The gap at which a controller takes a contour for open."""
+
+FOLLOWED = frozenset({"ENGRAVE", "MARK", "CUT_INNER", "CUT_OUTER"})
+"""The layers along which the head goes."""
+
+SINGLE_PIECES = frozenset({"CHAIN", "ARC"})
+"""Paths whose ends were computed from centres and angles."""
 
 SHORTER = 1.0 - 1e-6
 
@@ -59,13 +68,22 @@ class Comparison:
     shortest_mm: float
 
 
-def compared(back: ReadFile, drawing: Drawing, patterns: Mapping[str, FlatPattern]) -> Comparison:
-    """Return the comparison of one file; with exact edges for the parts in `patterns`."""
-    shortest = min(float(lengths(item.path).min()) for item in drawing.items if item.contour is not None)
+def compared(
+    back: ReadFile, drawing: Drawing, patterns: Mapping[str, FlatPattern], closed: Closed | None = None
+) -> Comparison:
+    """Return the comparison of one file; with exact edges for the parts in `patterns`.
+
+    closed: the outlines that share cuts, put together again from the file.
+    """
+    shortest = min((float(lengths(item.path).min()) for item in drawing.items if item.contour is not None), default=inf)
     paths = [entity for entity in back.entities if entity.kind != "TEXT"]
     findings = tuple(
         Finding("readback-content", f"{drawing.path}: {text}", fatal=True, where={"file": drawing.path})
-        for text in (*_differences(paths, drawing.items), *_unlike_labels(back, drawing.labels))
+        for text in (
+            *_differences(paths, drawing.items),
+            *_unlike_labels(back, drawing.labels),
+            *_unlike_outlines(closed or Closed((), ()), drawing.divided),
+        )
     )
     figures = () if findings else tuple(_figures(paths, drawing.items, patterns))
     if shortest < LEAST_PIECE_MM:
@@ -94,9 +112,33 @@ def metrics(comparisons: Sequence[Comparison], entities: int) -> tuple[Metric, .
 
 
 def cut_figures(back: ReadFile) -> dict[str, float]:
-    """Return the cut length in mm and the number of pierces of one file."""
+    """Return the cut length in mm, the number of pierces, and how far the head travels without cutting, in mm."""
     cut = [entity.path for entity in back.entities if entity.layer.startswith("CUT_") and entity.path is not None]
-    return {"cut_length_mm": float(sum(length(path) for path in cut)), "pierces": float(len(cut))}
+    long = float(sum(length(path) for path in cut))
+    return {"cut_length_mm": long, "pierces": float(len(cut)), "travel_mm": _travel(back)}
+
+
+def _travel(back: ReadFile) -> float:
+    """Return the way between marks and cuts as they follow in the file, begun at the corner of a sheet, mm."""
+    sheet = [bounds(one.path)[:2] for one in back.entities if one.layer == "SHEET" and one.path is not None]
+    paths = [one.path for one in back.entities if one.layer in FOLLOWED and one.path is not None]
+    ends = [path.vertices[[0, 0 if path.closed else -1]] for path in paths]
+    route = np.vstack([np.reshape(sheet[0], (1, 2)) if sheet else ends[0][:1], *ends]) if ends else np.zeros((1, 2))
+    return float(norm(route[1::2] - route[:-1:2]).sum())
+
+
+def common_lines(back: ReadFile, closed: Closed, path: str) -> Iterator[Finding]:
+    """Yield, if outlines share cuts, how many common lines there are and what they save, from the file alone."""
+    lines = [entity.path for entity in back.entities if is_shared(entity) and entity.kind == "LINE" and entity.path]
+    if not lines:
+        return
+    cut = fsum(length(entity.path) for entity in back.entities if is_shared(entity) and entity.path)
+    saved = fsum(length(outline.path) for outline in closed.outlines) - cut
+    long = fsum(map(length, lines))
+    text = f"{len(lines)} common lines of {long:.6g} mm in all serve two parts each and save {saved:.6g} mm of cut"
+    remark = "they are the way of the beam: no kerf is added to them"
+    where: dict[str, float | int | str] = {"file": path, "lines": len(lines), "length_mm": long, "saved_mm": saved}
+    yield Finding("common-lines", f"{path}: {text}; {remark}", where=where)
 
 
 def _where(contour: ContourFigures) -> dict[str, float | int | str]:
@@ -115,6 +157,32 @@ def _differences(paths: Sequence[Entity], items: Sequence[Item]) -> Iterator[str
             yield f"{entity.kind} on {entity.layer} is not the path that was drawn"
             continue
         yield from _sizes(entity, entity.path, item.path)
+
+
+def _unlike_outlines(closed: Closed, drawn: Sequence[ArcPath]) -> Iterator[str]:
+    """Yield the outlines that share cuts and are not, put together from the file, what was to be divided."""
+    found = [one.path for one in closed.outlines]
+    if len(found) != len(drawn):
+        yield f"holds {len(found)} outlines that share cuts, drawn were {len(drawn)}"
+        return
+    if not drawn:
+        return
+    boxes = cKDTree(np.array([bounds(path) for path in found]))
+    near = boxes.query_ball_point(np.array([bounds(path) for path in drawn]), MEET_MM, p=np.inf)
+    for path, places in zip(drawn, near, strict=True):
+        if not any(_is_same(found[place], path) for place in places):
+            yield "an outline in x {:.6g} to {:.6g}, y {:.6g} to {:.6g} is not there with what it shares".format(
+                *np.array(bounds(path))[[0, 2, 1, 3]]
+            )
+
+
+def _is_same(found: ArcPath, drawn: ArcPath) -> bool:
+    """Return whether closed paths in one box agree, every vertex within what ends that meet may be apart."""
+    long = length(drawn)
+    return (
+        abs(length(found) - long) <= 2.0 * MEET_MM * drawn.bulges.size
+        and abs(area(found) - area(drawn)) <= MEET_MM * long
+    )
 
 
 def _unlike_labels(back: ReadFile, labels: Sequence[Label]) -> Iterator[str]:
@@ -136,16 +204,17 @@ def _unlike_labels(back: ReadFile, labels: Sequence[Label]) -> Iterator[str]:
 
 def _sizes(entity: Entity, found: ArcPath, drawn: ArcPath) -> Iterator[str]:
     """Yield a place, a length or an area that did not survive; a circle's direction does not."""
+    near = ROUND_TRIP_MM if entity.kind not in SINGLE_PIECES else JOINT_MM
     moved = float(np.abs(np.subtract(bounds(found), bounds(drawn))).max())
-    if moved > ROUND_TRIP_MM:
+    if moved > near:
         yield f"{entity.kind} on {entity.layer} lies {moved:.3g} mm from where it was drawn"
     long = length(drawn)
-    if abs(length(found) - long) > ROUND_TRIP * long + ROUND_TRIP_MM:
+    if abs(length(found) - long) > ROUND_TRIP * long + near * entity.count:
         yield f"{entity.kind} on {entity.layer} has the length {length(found):.9g} mm, drawn were {long:.9g} mm"
     if not drawn.closed:
         return
     wide = abs(area(drawn)) if entity.kind == "CIRCLE" else area(drawn)
-    if abs(area(found) - wide) > ROUND_TRIP * abs(wide) + ROUND_TRIP_MM * long:
+    if abs(area(found) - wide) > ROUND_TRIP * abs(wide) + near * long:
         yield f"{entity.kind} on {entity.layer} has the area {area(found):.9g} mm2, drawn were {wide:.9g} mm2"
 
 
@@ -159,14 +228,14 @@ def _figures(
             continue
         contour = (pattern.outer, *pattern.inner)[item.contour]
         try:
-            yield _contour_figures(entity.path, contour, item.part, item.contour)
+            yield _contour_figures(entity.path, entity.gap_mm, contour, item.part, item.contour)
         except NoSolutionError as error:
             error.add_note(f"part {item.part!r}, stage write")
             raise
 
 
-def _contour_figures(path: ArcPath, contour: Contour, part: str, number: int) -> ContourFigures:
-    """Return how one contour as read compares with its exact edges."""
+def _contour_figures(path: ArcPath, gap_mm: float, contour: Contour, part: str, number: int) -> ContourFigures:
+    """Return how one contour as read compares with its exact edges; gap_mm: the widest between its entities."""
     edges = [resolved(edge, accuracy=GRID_SHARE * contour.chord_mm) for edge in contour.edges]
     deviation = hausdorff(edges, path, accuracy=contour.chord_mm)
     exact_length, exact_area = length_and_area(edges, accuracy=QUADRATURE)
@@ -175,7 +244,7 @@ def _contour_figures(path: ArcPath, contour: Contour, part: str, number: int) ->
         number,
         deviation.bound_mm,
         contour.chord_mm,
-        _closure(path, edges),
+        max(_closure(path, edges), gap_mm),
         abs(length(path) - exact_length) / exact_length,
         abs(abs(area(path)) - abs(exact_area)) / abs(exact_area),
     )

@@ -1,20 +1,27 @@
 """What goes into each file, in the order it will be cut, before anyone speaks of formats.
 
-Per part: its label and texts, its marks, its inner contours (small first), its outer contour; a sheet's outline comes
-before all parts.  A nested part is the pattern's own path, moved: arcs stay arcs, marks, label and texts go along.
+Per part: its label and texts, its marks, its inner contours (small first), its outer contour; a sheet's outline and its
+defects come before all parts.  A roll is drawn as long as it is used.  Zones are not drawn: nothing is cut along them,
+and the pictures show them.  A nested part is the pattern's own path, moved: arcs stay arcs, marks, label and texts go
+along.
 """
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, area, bounds, distances, piece_count, split, transform
+from stages.geometry.arcpath import ArcPath, bounds, distances, piece_count, split, transform
 from stages.geometry.arrays import ArrayValue, Vector2
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
 from stages.model.pattern import LETTER_WIDTH, FlatPattern, Text
 from stages.model.sheet import SheetLayout
+from stages.model.strokes import Stroke, strokes
+from stages.model.used import used_length_mm
+from stages.write.commonlines import in_turn, shared_cuts
+from stages.write.flavours import as_written
+from stages.write.strokefont import lettering, reach
 
 LABEL_MOST_MM = 10.0
 LABEL_LEAST_MM = 0.1
@@ -22,6 +29,9 @@ LABEL_LEAST_MM = 0.1
 
 LABEL_FILL = 0.9
 """Share of the room around the label's place that its box may take."""
+
+LEAST_REACH = 0.1
+"""In heights of a text: less than any letter reaches from its middle."""
 
 FULL_TURN = 360.0
 QUARTER_BULGE = 0.41421356237309503
@@ -57,28 +67,78 @@ class Label(ArrayValue):
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """One file to be: its place below the output folder, its paths in order, and its labels."""
+    """One file to be: its place below the output folder, its paths in order, and its labels.
+
+    kerf_mm: parts this far apart share cuts (`stages.write.commonlines`); None: every outline is drawn whole.
+    divided: the outlines that are not.
+    """
 
     path: str
     items: tuple[Item, ...]
     labels: tuple[Label, ...]
+    kerf_mm: float | None = None
+    divided: tuple[ArcPath, ...] = ()
 
 
 def flat_drawing(pattern: FlatPattern, machine: Machine) -> Drawing:
     """Return the drawing of one part in its own flat frame."""
-    items, labels = _items(pattern, Rigid2(), machine), _labels(pattern, Rigid2())
-    return Drawing(f"flat/{pattern.part}.dxf", tuple(items), tuple(labels))
+    items, labels = _items(pattern, Rigid2(), machine), _texts(pattern, Rigid2(), machine)
+    return Drawing(f"flat/{pattern.part}.dxf", _written(items, machine), tuple(labels))
 
 
 def sheet_drawing(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> Drawing:
     """Return the drawing of one nested sheet."""
-    width, height = layout.sheet.width_mm, layout.sheet.height_mm
-    corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
-    items = [Item("SHEET", "", ArcPath(corners, np.zeros(4), closed=True))]
-    for placement in layout.placements:
-        items += _items(patterns[placement.part], placement.motion, machine)
-    labels = [label for placed in layout.placements for label in _labels(patterns[placed.part], placed.motion)]
-    return Drawing(f"cut/{layout.sheet.id}-{layout.index}.dxf", tuple(items), tuple(labels))
+    parts = [_items(patterns[placement.part], placement.motion, machine) for placement in layout.placements]
+    items, divided = _sharing(parts, machine.common_kerf_mm)
+    items = [*_stock(layout, patterns, machine), *items]
+    labels = [label for placed in layout.placements for label in _texts(patterns[placed.part], placed.motion, machine)]
+    path = machine.path(layout.sheet.id, layout.index)
+    return Drawing(path, _written(items, machine), tuple(labels), machine.common_kerf_mm, divided)
+
+
+def _written(items: Iterable[Item], machine: Machine) -> tuple[Item, ...]:
+    """Return the items with the paths that the flavour holds."""
+    return tuple(replace(item, path=as_written(item.path, machine, outline=item.contour is not None)) for item in items)
+
+
+def _sharing(parts: Sequence[Sequence[Item]], kerf_mm: float | None) -> tuple[list[Item], tuple[ArcPath, ...]]:
+    """Return the paths of some parts with common lines instead of shared edges, and the outlines that share any.
+
+    A common line comes right after the later one of its parts.
+    """
+    if kerf_mm is None:
+        return [item for part in parts for item in part], ()
+    shared = shared_cuts([part[-1].path for part in parts], kerf_mm)
+    made: list[Item] = []
+    for number, (*before, outer) in enumerate(parts):
+        rests = [replace(outer, path=rest) for rest in shared.rests[number]]
+        lines = [line for line in shared.lines if line.outlines[-1] == number]
+        begin = (*before, outer, *rests)[-1].path.vertices[-1]
+        made += [*before, *rests, *(Item("CUT_OUTER", "", line) for line in in_turn(lines, begin))]
+    sharing = {number for line in shared.lines for number in line.outlines}
+    return made, tuple(part[-1].path for number, part in enumerate(parts) if number in sharing)
+
+
+def _stock(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> list[Item]:
+    """Return the outline of a sheet, of a roll as far as it is used, that of what is left over, and the defects."""
+    edges = [stock_outline(layout, patterns)]
+    if layout.offcut is not None:
+        piece = layout.offcut
+        edges.append(rectangle(piece.width_mm, piece.height_mm, piece.x, piece.y))
+    drawn = [*(("SHEET", path) for path in edges), *(("SHEET_KEEPOUT", path) for path in layout.sheet.defects)]
+    return [Item(layer, "", split(path, max_bulge=machine.max_bulge)) for layer, path in drawn]
+
+
+def stock_outline(layout: SheetLayout, patterns: Mapping[str, FlatPattern]) -> ArcPath:
+    """Return the outline of a sheet, of a roll as far as it is used."""
+    sheet = layout.sheet
+    return sheet.outline or rectangle(used_length_mm(layout, patterns), sheet.height_mm)
+
+
+def rectangle(width_mm: float, height_mm: float, x: float = 0.0, y: float = 0.0) -> ArcPath:
+    """Return an upright rectangle from its lower left corner."""
+    corners = np.array([[0.0, 0.0], [width_mm, 0.0], [width_mm, height_mm], [0.0, height_mm]]) + np.array([x, y])
+    return ArcPath(corners, np.zeros(4), closed=True)
 
 
 def extent(paths: Iterable[ArcPath]) -> tuple[float, float, float, float]:
@@ -90,18 +150,32 @@ def extent(paths: Iterable[ArcPath]) -> tuple[float, float, float, float]:
 
 def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
     """Return the paths of one copy of a part, in the order of cutting."""
-    inner = sorted(range(len(pattern.inner)), key=lambda i: abs(area(pattern.inner[i].path)))
 
-    def moved(layer: str, path: ArcPath, contour: int | None = None) -> Item:
-        return Item(layer, pattern.part, transform(split(path, max_bulge=machine.max_bulge), motion), contour)
+    def moved(stroke: Stroke) -> Item:
+        path = transform(split(stroke.path, max_bulge=machine.max_bulge), motion)
+        return Item(stroke.layer, pattern.part, path, stroke.contour)
 
-    marks = [moved(mark.layer, mark.path) for mark in pattern.marks]
-    holes = [moved("CUT_INNER", pattern.inner[i].path, i + 1) for i in inner]
-    return [*marks, *holes, moved("CUT_OUTER", pattern.outer.path, 0)]
+    return [*_engraved(pattern, motion, machine), *(moved(stroke) for stroke in strokes(pattern))]
 
 
-def _labels(pattern: FlatPattern, motion: Rigid2) -> list[Label]:
-    """Return the part's name and the texts on it."""
+def _engraved(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
+    """Return the part's name and texts as strokes if the machine wants that, and they are not among its marks."""
+    if machine.text == "TEXT" or any(mark.layer == "ENGRAVE" for mark in pattern.marks):
+        return []
+    name = _label(pattern, motion)
+    room = LABEL_FILL * _room(pattern) / max(reach(name.text), LEAST_REACH)
+    labels = [name.replace(height_mm=min(room, LABEL_MOST_MM)), *(_moved(text, motion) for text in pattern.texts)]
+    return [
+        Item("ENGRAVE", pattern.part, path)
+        for label in labels
+        for path in lettering(label.text, label.at, label.height_mm, label.angle_deg)
+    ]
+
+
+def _texts(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Label]:
+    """Return the part's name and the texts on it, unless they are strokes."""
+    if machine.text == "strokes":
+        return []
     return [_label(pattern, motion), *(_moved(text, motion) for text in pattern.texts)]
 
 
@@ -120,10 +194,14 @@ def _label(pattern: FlatPattern, motion: Rigid2) -> Label:
 
 def _label_height(pattern: FlatPattern) -> float:
     """Return the height in mm at which the name's box fits into the free circle around its place."""
-    paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
-    room = min(_distance(pattern.label_at, split(path, max_bulge=QUARTER_BULGE)) for path in paths)
     diagonal = float(np.hypot(LETTER_WIDTH * len(pattern.part), 1.0))
-    return float(np.clip(2.0 * LABEL_FILL * room / diagonal, LABEL_LEAST_MM, LABEL_MOST_MM))
+    return float(np.clip(2.0 * LABEL_FILL * _room(pattern) / diagonal, LABEL_LEAST_MM, LABEL_MOST_MM))
+
+
+def _room(pattern: FlatPattern) -> float:
+    """Return how far the label's place is from all contours, mm."""
+    paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
+    return min(_distance(pattern.label_at, split(path, max_bulge=QUARTER_BULGE)) for path in paths)
 
 
 def _distance(point: Vector2, path: ArcPath) -> float:

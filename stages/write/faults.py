@@ -9,20 +9,21 @@ where that one has spoken.
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from shapely import Polygon, prepare
 
-from stages.geometry.arcpath import ArcPath, area, lengths, polygon
+from stages.geometry.arcpath import area, lengths
 from stages.geometry.arrays import Array, norm
 from stages.geometry.overlap import overlaps
 from stages.model.report import Finding
+from stages.write.chains import Entity
+from stages.write.closing import Closed, is_shared
 from stages.write.drawing import extent
-from stages.write.dxf import UNIT_VARIABLES
-from stages.write.readback import Entity, ReadFile
+from stages.write.dxf import unit_variables
+from stages.write.readback import ReadFile
+from stages.write.sequence import order_faults, shared_order_faults
 
-KINDS = frozenset({"LWPOLYLINE", "POLYLINE", "VERTEX", "SEQEND", "LINE", "ARC", "CIRCLE", "TEXT", "POINT"})
+KINDS = frozenset({"LWPOLYLINE", "POLYLINE", "VERTEX", "SEQEND", "LINE", "ARC", "CIRCLE", "TEXT", "POINT", "CHAIN"})
 CUT_LAYERS = ("CUT_INNER", "CUT_OUTER")
-CLOSED_LAYERS = (*CUT_LAYERS, "SHEET")
-RANK = {"MARK": 0, "CUT_INNER": 1, "CUT_OUTER": 2}
+CLOSED_LAYERS = (*CUT_LAYERS, "SHEET", "SHEET_KEEPOUT")
 
 EXTENT_MM = 0.01
 OVERLAP_MM = 0.01
@@ -35,29 +36,28 @@ BESIDE_MM = 0.05
 """How far a mark or hole may reach beyond its outline besides what lines and arcs are off their exact curves."""
 TWO_CURVES = 2.0
 """A mark that ends on the exact outline and the outline itself are each within the chord of their exact curves."""
-POLYGON_MM = BESIDE_MM / 4.0
-"""How near the polygons come to the arcs that they stand for."""
-
 WHOLE = 0.999
 """Share of a contour that is cut twice from which on it is a copy, not a side shared with a neighbour."""
 
 
-def faults(file: ReadFile, path: str, shortest_mm: float, chord_mm: float) -> list[Finding]:
+def faults(
+    file: ReadFile, path: str, shortest_mm: float, chord_mm: float, closed: Closed | None = None
+) -> list[Finding]:
     """Return the faults of one file.
 
     shortest_mm: the length below which a piece is too short.
     chord_mm: how far its paths may be off their exact curves.
+    closed: the outlines that share cuts, put together again; None: none may, and every outline must be closed.
     """
     found: list[Finding] = [_fatal("readback-complaint", path, text) for text in file.complaints]
     if not file.entities:
         return found or [_fatal("readback-empty", path, "no entity")]
-    for check in (_units, _extents, _colours, _kinds, _open_contours, _vertices, _bulges, _directions):
+    for check in (_units, _extents, _colours, _kinds, _vertices, _bulges, _directions):
         found += [_fatal(code, path, text) for code, text in check(file)]
+    found += [_fatal(code, path, text) for code, text in _open_contours(file, closed)]
     found += [_fatal("readback-short-piece", path, text) for text in _short_pieces(file, shortest_mm)]
     if not found:
-        found += [
-            _fatal("readback-order", path, text) for text in _order(file.entities, TWO_CURVES * chord_mm + BESIDE_MM)
-        ]
+        found += [_fatal("readback-order", path, text) for text in _order(file, closed, chord_mm)]
     return found + list(_overlaps(file.entities, path))
 
 
@@ -68,7 +68,7 @@ def _fatal(code: str, path: str, message: str) -> Finding:
 
 def _units(file: ReadFile) -> Iterator[tuple[str, str]]:
     """Yield header variables that do not say millimetres."""
-    for name, wanted in UNIT_VARIABLES.items():
+    for name, wanted in unit_variables(file.version).items():
         if file.header.get(name) != wanted:
             yield "readback-units", f"{name} is {file.header.get(name)}, must be {wanted:g} for millimetres"
 
@@ -86,9 +86,9 @@ def _extents(file: ReadFile) -> Iterator[tuple[str, str]]:
 
 
 def _colours(file: ReadFile) -> Iterator[tuple[str, str]]:
-    """Yield layers that are not declared and entities whose own colour is not their layer's."""
+    """Yield layers that are not declared or mean nothing, and entities whose own colour is not their layer's."""
     for entity in file.entities:
-        if entity.layer not in file.layers or entity.layer == "0":
+        if entity.layer not in file.layers:
             yield "readback-layer", f"{entity.kind} on the layer {entity.layer!r}, which means nothing here"
         elif entity.colour != file.layers[entity.layer]:
             yield "readback-colour", f"{entity.kind} on {entity.layer} has the colour {entity.colour}"
@@ -102,11 +102,23 @@ def _kinds(file: ReadFile) -> Iterator[tuple[str, str]]:
             yield "readback-entity", f"{entity.kind} on {entity.layer}"
 
 
-def _open_contours(file: ReadFile) -> Iterator[tuple[str, str]]:
-    """Yield what lies on a cut or sheet layer and does not close."""
+def _open_contours(file: ReadFile, closed: Closed | None) -> Iterator[tuple[str, str]]:
+    """Yield what lies on a cut or sheet layer and does not close, nor make up an outline with what others share."""
     for entity in file.entities:
-        if entity.layer in CLOSED_LAYERS and not entity.closed:
+        if entity.layer in CLOSED_LAYERS and not entity.closed and not (closed and is_shared(entity)):
             yield "readback-open-contour", f"{entity.kind} on {entity.layer} is not closed"
+    for outline in closed.outlines if closed else ():
+        if area(outline.path) <= 0.0:
+            yield "readback-direction", "an outline that shares cuts runs the wrong way round"
+    yield from (("readback-open-contour", text) for text in (closed.loose if closed else ()))
+
+
+def _order(file: ReadFile, closed: Closed | None, chord_mm: float) -> Iterator[str]:
+    """Return what comes in an order in which it may not be cut."""
+    beside = TWO_CURVES * chord_mm + BESIDE_MM
+    if closed and closed.outlines:
+        return shared_order_faults(file.entities, closed, beside)
+    return order_faults(file.entities, beside)
 
 
 def _vertices(file: ReadFile) -> Iterator[tuple[str, str]]:
@@ -142,47 +154,6 @@ def _directions(file: ReadFile) -> Iterator[tuple[str, str]]:
             continue
         if (area(entity.path) > 0.0) != (entity.layer == "CUT_OUTER"):
             yield "readback-direction", f"{entity.kind} on {entity.layer} runs the wrong way round"
-
-
-def _order(entities: Sequence[Entity], beside_mm: float) -> Iterator[str]:
-    """Yield what is not followed by its own outline: of each part marks, then holes, then the outline around them.
-
-    beside_mm: how far a mark or hole may reach beyond its outline and still belong to it.
-    """
-    group: list[Entity] = []
-    for entity in entities:
-        if entity.layer in RANK:
-            group.append(entity)
-        if entity.layer == "CUT_OUTER":
-            yield from _group_order(group, beside_mm)
-            group = []
-    if group:
-        yield f"{len(group)} marks or holes come after the last outline"
-
-
-def _group_order(group: Sequence[Entity], beside_mm: float) -> Iterator[str]:
-    """Yield what is out of order among the paths that end with one outline."""
-    ranks = [RANK[entity.layer] for entity in group]
-    if ranks != sorted(ranks):
-        yield "marks must come before holes"
-    outline = _region(group[-1].path, beside_mm)
-    if outline is None:
-        return
-    prepare(outline)
-    for entity in group[:-1]:
-        if entity.path is not None and not outline.contains(Polygon(_ring(entity.path))):
-            yield f"{entity.kind} on {entity.layer} comes before an outline that does not hold it"
-
-
-def _region(path: ArcPath | None, margin: float) -> Polygon | None:
-    """Return the region inside a path, grown by `margin` mm."""
-    return None if path is None else Polygon(polygon(path, accuracy=POLYGON_MM)).buffer(margin)
-
-
-def _ring(path: ArcPath) -> Array:
-    """Return a ring of points that stands for the path; an open one runs there and back."""
-    points = polygon(path, accuracy=POLYGON_MM)
-    return points if path.closed and points.shape[0] > 2 else np.concatenate([points, points[::-1]])  # noqa: PLR2004
 
 
 def _cut(entities: Sequence[Entity]) -> list[Entity]:

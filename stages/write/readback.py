@@ -1,72 +1,92 @@
 """What a written file says, read again from its text: header, entities as paths, and what the library complains of.
 
+Lines and arcs that follow each other are one path again (`chains`).  Layers go by what they mean: a profile says how
+the file calls them, and two that share a name are told apart by colour.
+
 Nothing of the drawing that was written is used here.  Texts are kept with what they say and where; entities that are
 neither (what does not belong into a cut file) by kind and layer.
 """
 
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from io import StringIO
 
 import numpy as np
 from ezdxf.document import Drawing as Document
+from ezdxf.entities.arc import Arc
 from ezdxf.entities.circle import Circle
 from ezdxf.entities.dxfentity import DXFEntity
 from ezdxf.entities.line import Line
 from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.entities.polyline import Polyline
 from ezdxf.entities.text import Text
 from ezdxf.filemanagement import read as read_dxf
 from ezdxf.lldxf.const import DXFError
 
 from stages.geometry.arcpath import ArcPath
+from stages.geometry.arrays import Points3
+from stages.model.cutfile import PROFILES, Layer
+from stages.write.chains import Entity, Writing, chained
 
-
-@dataclass(frozen=True, slots=True)
-class Writing:
-    """A text by its letters, the place of its middle, its height (mm) and the direction of its line."""
-
-    text: str
-    x: float
-    y: float
-    height_mm: float
-    angle_deg: float
-
-
-@dataclass(frozen=True, slots=True)
-class Entity:
-    """One entity: its DXF name, layer, colour index, its path if it is one, whether it closes, what it says.
-
-    A circle is a closed path of two half circles, counter-clockwise.
-    """
-
-    kind: str
-    layer: str
-    colour: int
-    path: ArcPath | None
-    closed: bool
-    writing: Writing | None = None
+FULL_TURN = 360.0
+MOST_FLAGS = 1 + 128
+"""A plain polyline in the plane is closed or not, and may say that its line type runs on; all else is another thing."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReadFile:
-    """A file as read: header variables, entities in order, layer colours, and complaints of the reader."""
+    """A file as read: its version, header variables, entities in order, layer colours, and complaints of the reader.
+
+    layers: those that are declared and mean something, by what they mean.
+    """
 
     header: dict[str, object]
     entities: tuple[Entity, ...]
     layers: dict[str, int]
     complaints: tuple[str, ...]
+    version: str = ""
 
 
-def read(text: str) -> ReadFile:
-    """Return the content of a DXF text; where it cannot be read, only complaints."""
+def read(text: str, layers: Mapping[str, Layer] = PROFILES["planish"]) -> ReadFile:
+    """Return the content of a DXF text; where it cannot be read, only complaints.
+
+    layers: how the file calls them.
+    """
     try:
         document = read_dxf(StringIO(text))
-        entities = tuple(_entity(entity) for entity in document.modelspace())
+        entities = chained([_meant(_entity(entity), layers) for entity in document.modelspace()])
     except (DXFError, ValueError) as error:
         return ReadFile({}, (), {}, (f"cannot be read: {error}",))
     complaints = [f"{error.message}" for error in document.audit().errors]
     if not text.isascii():
         complaints.append("holds letters that are not ASCII")
-    return ReadFile(_header(document), entities, _layers(document), tuple(complaints))
+    version = str(document.acad_release)
+    return ReadFile(_header(document), entities, _colours(document, layers), tuple(complaints), version)
+
+
+def _meant(entity: Entity, layers: Mapping[str, Layer]) -> Entity:
+    """Return the entity on the layer that its layer's name means, and its colour where several share that name."""
+    named = [meaning for meaning, layer in layers.items() if layer.name.casefold() == entity.layer.casefold()]
+    coloured = [meaning for meaning in named if layers[meaning].colour == entity.colour]
+    meaning = coloured or named
+    return replace(entity, layer=meaning[0]) if meaning else replace(entity, layer=_foreign(entity.layer, layers))
+
+
+def _foreign(name: str, layers: Mapping[str, Layer]) -> str:
+    """Return the name of a layer that means nothing, such that nobody takes it for one that does."""
+    return f"{name} of another profile" if name in layers else name
+
+
+def _colours(document: Document, layers: Mapping[str, Layer]) -> dict[str, int]:
+    """Return the colours of the layers that the file declares; where several share a name, each has its own."""
+    declared = {str(layer.dxf.name).casefold(): int(layer.dxf.color) for layer in document.layers}
+    shared = Counter(layer.name.casefold() for layer in layers.values())
+    return {
+        meaning: declared[name] if shared[name] == 1 else layer.colour
+        for meaning, layer in layers.items()
+        if (name := layer.name.casefold()) in declared
+    }
 
 
 def _header(document: Document) -> dict[str, object]:
@@ -74,24 +94,25 @@ def _header(document: Document) -> dict[str, object]:
     return {name: document.header[name] for name in document.header.varnames()}
 
 
-def _layers(document: Document) -> dict[str, int]:
-    """Return the colour index of each layer."""
-    return {str(layer.dxf.name): int(layer.dxf.color) for layer in document.layers}
-
-
 def _entity(entity: DXFEntity) -> Entity:
-    """Return one entity with its path, if it is a line, a polyline or a circle."""
-    path, closed = None, False
-    if isinstance(entity, LWPolyline):
-        path, closed = _polyline(entity), bool(entity.closed)
-    elif isinstance(entity, Circle):
-        path, closed = _circle(entity), True
-    elif isinstance(entity, Line):
-        ends = [(end.x, end.y) for end in (entity.dxf.start, entity.dxf.end)]
-        path = _path(ends, [0.0, 0.0], closed=False)
-    writing = _writing(entity) if isinstance(entity, Text) else None
+    """Return one entity with its path, if it is a line, an arc, a polyline or a circle."""
     # colour 256: as the layer
-    return Entity(entity.dxftype(), str(entity.dxf.layer), int(entity.dxf.get("color", 256)), path, closed, writing)
+    own = Entity(entity.dxftype(), str(entity.dxf.layer), int(entity.dxf.get("color", 256)), None, closed=False)
+    if isinstance(entity, LWPolyline):
+        points = np.array(entity.get_points("xyb"), dtype=np.float64).reshape(-1, 3)
+        return _polyline(own, points, closed=bool(entity.closed))
+    if isinstance(entity, Polyline) and not int(entity.dxf.flags) & ~MOST_FLAGS:
+        corners = [(corner.dxf.location.x, corner.dxf.location.y, corner.dxf.bulge) for corner in entity.vertices]
+        return _polyline(own, np.array(corners, dtype=np.float64).reshape(-1, 3), closed=bool(entity.is_closed))
+    # an arc is a circle to the library
+    if isinstance(entity, Arc):
+        return replace(own, path=_arc(entity), begins=entity.dxf.hasattr("linetype"))
+    if isinstance(entity, Circle):
+        return replace(own, path=_circle(entity), closed=True)
+    if isinstance(entity, Line):
+        ends = [(end.x, end.y) for end in (entity.dxf.start, entity.dxf.end)]
+        return replace(own, path=_path(ends, [0.0, 0.0], closed=False), begins=entity.dxf.hasattr("linetype"))
+    return replace(own, writing=_writing(entity) if isinstance(entity, Text) else None)
 
 
 def _writing(entity: Text) -> Writing:
@@ -100,12 +121,20 @@ def _writing(entity: Text) -> Writing:
     return Writing(str(entity.dxf.text), at.x, at.y, float(entity.dxf.height), float(entity.dxf.rotation))
 
 
-def _polyline(entity: LWPolyline) -> ArcPath | None:
-    """Return the path of a polyline, or None if it has fewer than two vertices."""
-    points = np.array(entity.get_points("xyb"), dtype=np.float64).reshape(-1, 3)
+def _polyline(entity: Entity, points: Points3, *, closed: bool) -> Entity:
+    """Return a polyline of x, y and bulge; without a path if it has fewer than two vertices."""
     if points.shape[0] < 2:  # noqa: PLR2004  no path
-        return None
-    return _path(points[:, :2], points[:, 2], closed=bool(entity.closed))
+        return replace(entity, closed=closed)
+    return replace(entity, path=_path(points[:, :2], points[:, 2], closed=closed), closed=closed)
+
+
+def _arc(entity: Arc) -> ArcPath:
+    """Return an arc, which runs counter-clockwise, with the ends that a reader computes."""
+    x, y, radius = entity.dxf.center.x, entity.dxf.center.y, entity.dxf.radius
+    sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % FULL_TURN or FULL_TURN
+    angles = np.radians([entity.dxf.start_angle, entity.dxf.start_angle + sweep])
+    ends = np.stack([x + radius * np.cos(angles), y + radius * np.sin(angles)], axis=1)
+    return _path(ends, [np.tan(np.radians(sweep) / 4.0), 0.0], closed=False)
 
 
 def _circle(entity: Circle) -> ArcPath:

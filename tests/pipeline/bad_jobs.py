@@ -143,18 +143,18 @@ BAD: dict[str, tuple[str, list[str]]] = {
         [
             "job.toml:2:12: material: 3 where a table belongs "
             "(a table with the keys name, thickness, density, bend_radius_min, max_strain, k_factor, yield_strength, "
-            "youngs_modulus)",
+            "youngs_modulus, grain)",
             'job.toml:3:1: units: a table is not allowed (one of "cm", "in", "m", "mm")',
             "job.toml:5:8: part[0].name: an array of 0 where a text from 1 to 80 characters belongs",
             "job.toml:6:11: part[0].surface: 3 where a table belongs (write a table with a kind)",
         ],
     ),
     "a sheet that is none": (
-        PLATE + STOCK.replace("60", "0").replace("price = 12.5", 'price = -1\nkind = "hide"'),
+        PLATE + STOCK.replace("60", "0").replace("price = 12.5", 'price = -1\nkind = "skin"'),
         [
             "job.toml:12:10: stock[0].height: 0 (must be above 0)",
             "job.toml:13:9: stock[0].price: -1 (may not be negative)",
-            'job.toml:14:8: stock[0].kind: "hide" is not allowed (only "sheet")',
+            'job.toml:14:8: stock[0].kind: "skin" is not allowed (one of "hide", "remnant", "roll", "sheet")',
         ],
     ),
     "wishes that no nest can grant": (
@@ -168,7 +168,10 @@ BAD: dict[str, tuple[str, list[str]]] = {
     ),
     "a key of the future": (
         PLATE + '[process]\nkerf_compensation = "offset"\n',
-        ['job.toml:10:1: process.kerf_compensation: unknown key (one of "type", "kerf", "min_hole", "min_web")'],
+        [
+            'job.toml:10:1: process.kerf_compensation: unknown key (one of "type", "kerf", "min_hole", "min_web", '
+            '"speed", "pierce_time")'
+        ],
     ),
     "a dotted key and an inline table": (
         'schema = 1\njob.nam = "x"\npart = [{ name = "a", surface = { kind = "cone", radius0 = 3, hight = 2 } }]\n',

@@ -2,9 +2,13 @@
 
 import ast
 import re
+import runpy
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).parents[2]
 LOCK = (ROOT / "requirements.lock").read_text("utf-8")
@@ -19,6 +23,32 @@ def test_dev_is_short_and_imports_the_standard_library_only() -> None:
         if isinstance(node, ast.Import | ast.ImportFrom)
     }
     assert imported <= sys.stdlib_module_names
+
+
+@pytest.mark.parametrize(
+    ("words", "module", "rest"),
+    [
+        (["bench", "nest", "--seconds", "5"], "tests.bench.nest", ["--seconds", "5"]),
+        (["bench", "-k", "nest"], "pytest", ["-k", "nest"]),
+        (["types"], "mypy", []),
+    ],
+)
+def test_two_words_are_a_chore_before_one_is(
+    words: list[str], module: str, rest: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dev = runpy.run_path(str(ROOT / "dev.py"))
+    run: list[list[str]] = []
+
+    def ended(command: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        run.append(command[1:])
+        return subprocess.CompletedProcess(command, 0)
+
+    monkeypatch.setattr(subprocess, "run", ended)
+    monkeypatch.setitem(dev["main"].__globals__, "set_up", lambda: None)
+    monkeypatch.setattr(sys, "argv", ["dev.py", *words])
+    dev["main"]()
+    assert run[0][:2] == ["-m", module]
+    assert run[0][len(run[0]) - len(rest) :] == rest
 
 
 def test_the_lock_holds_every_dependency_with_hashes_and_no_address() -> None:

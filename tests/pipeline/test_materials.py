@@ -6,7 +6,7 @@ import pytest
 
 from pipeline.job import job_of
 from pipeline.jobfile import read
-from pipeline.materials import VALUES, MaterialRow, listing, look_up, table
+from pipeline.materials import VALUES, MaterialRow, are_same, listing, look_up, table
 from stages.errors import BadInputError
 from stages.model.kfactor import KFactor
 from stages.model.material import Material
@@ -109,3 +109,11 @@ def test_an_unknown_name_stands_for_the_values_given_and_says_so(tmp_path: Path)
     assert notes == (
         'material "stainles 304" is not in the table: only the values given count; did you mean "stainless 304"?',
     )
+
+
+def test_names_of_one_row_mean_one_material() -> None:
+    assert are_same("mild steel", "DC01")
+    assert are_same("Brass", "brass")
+    assert not are_same("mild steel", "brass")
+    assert not are_same("unobtainium", "adamantium")
+    assert are_same("un-obtainium", "Un obtainium"), "not in the table, and alike"

@@ -1,6 +1,7 @@
 import json
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from io import BytesIO
@@ -17,13 +18,13 @@ from pipeline.report.pictures_edges import corner_points, hole_text, rulings, si
 from pipeline.report.pictures_flat import pattern_room
 from pipeline.report.pictures_flat_names import upright
 from pipeline.report.pictures_net import frame_of, net, normals, ruling_places, view_direction
-from pipeline.report.pictures_sheet import FILLS, Free, offcut
+from pipeline.report.pictures_sheet import FILLS, FREE_FILL
 from stages.construct import construct
 from stages.geometry.rigid import Rigid2
 from stages.model.material import Part
 from stages.model.part import PartSpec
 from stages.model.pattern import FlatPattern
-from stages.model.sheet import Placement, Sheet, SheetLayout
+from stages.model.sheet import Placement, Rectangle, Sheet, SheetLayout
 from stages.model.surface import RuledSurface, Surface
 from stages.model.tolerances import Tolerances
 from stages.unroll import unroll
@@ -283,14 +284,13 @@ def test_a_sheet_of_any_size_is_drawn_even_without_parts(size: tuple[float, floa
     assert pixels(sheet_picture(layout, {})).shape[1] == 1320
 
 
-def test_the_offcut_is_the_strip_beyond_the_last_part() -> None:
+def test_the_offcut_of_the_layout_is_shown() -> None:
     _, pattern = made(PLATE)
     layout = SheetLayout(Sheet("s", 1000.0, 250.0), 1, (Placement("part", 1, Rigid2(10.0, 20.0)),), 0.2)
-    free = offcut(layout, {"part": pattern})
-    assert isinstance(free, Free)
-    assert (free.low_x, free.low_y, free.high_x, free.high_y) == pytest.approx((310.0, 0.0, 1000.0, 250.0))
-    full = SheetLayout(Sheet("s", 301.0, 201.0), 1, (Placement("part", 1, Rigid2()),), 0.9)
-    assert offcut(full, {"part": pattern}) is None
+    with_offcut = replace(layout, offcut=Rectangle(320.0, 0.0, 680.0, 250.0))
+    shown, bare = (sheet_picture(one, {"part": pattern}) for one in (with_offcut, layout))
+    assert count(shown, FREE_FILL) > 20_000
+    assert count(bare, FREE_FILL) < 200, "letters have pixels of all greys"
 
 
 def test_more_names_than_rows_are_counted_in_the_table() -> None:

@@ -101,7 +101,7 @@ def test_what_the_schema_describes_is_what_the_stages_say(
 @pytest.mark.parametrize(
     ("name", "statuses", "files"),
     [
-        ("nested", ["made", "pass", "pass"], {"flat/plate.dxf", "flat/cone.dxf", "cut/sheet-1.dxf"}),
+        ("nested", ["made", "pass", "pass"], {"layout.json", "flat/plate.dxf", "flat/cone.dxf", "cut/sheet-1.dxf"}),
         ("flat only", ["made", "skipped", "skipped"], {"flat/plate.dxf"}),
         ("rejected", ["rejected", "skipped", "skipped"], {"flat/plate.dxf"}),
         ("too large", ["no-solution", "fail", "skipped"], {"flat/plate.dxf"}),
@@ -149,7 +149,7 @@ def test_names_that_no_file_system_takes_stay_in_the_report_and_leave_the_files(
     assert entry(report, "nest", "sheets", 0, "stock") == "S/1"
     assert entry(report, "nest", "sheets", 0, "file") == "cut/S-1-1.dxf"
     assert entry(report, "nest", "sheets", 0, "placements", 0, "part") == "../Bö/ß"
-    assert set(produced) == {"report.json", "flat/Bo.dxf", "cut/S-1-1.dxf"}
+    assert set(produced) == {"report.json", "layout.json", "flat/Bo.dxf", "cut/S-1-1.dxf"}
 
 
 WOUND = """\

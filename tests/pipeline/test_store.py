@@ -83,6 +83,26 @@ def test_a_folder_with_other_files_is_never_replaced(tmp_path: Path, names: list
     assert files(out) == sorted(names)
 
 
+POOL = b'{"schema": "planish-pool/1", "groups": [{"name": "steel-2mm"}, 3]}'
+
+
+def test_the_folder_of_pooled_jobs_holds_its_groups_and_nothing_else(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    for _ in range(2):
+        with replacement(out) as draft:
+            write_files(draft, {"report.json": POOL, "steel-2mm/cut/a.dxf": b"0"})
+    (out / "brass-1mm").mkdir()
+    with pytest.raises(BadInputError, match="holds brass-1mm, which planish did not write"), replacement(out):
+        pass
+    assert files(tmp_path) == ["out/report.json", "out/steel-2mm/cut/a.dxf"]
+
+
+def test_a_pool_without_a_list_of_groups_is_not_ours(tmp_path: Path) -> None:
+    write_files(tmp_path / "out", {"report.json": b'{"schema": "planish-pool/1"}'})
+    with pytest.raises(BadInputError, match="is no output folder of planish"), replacement(tmp_path / "out"):
+        pass
+
+
 def test_a_foreign_report_does_not_make_a_folder_ours(tmp_path: Path) -> None:
     write_files(tmp_path / "out", {"report.json": b'{"tests": 3}'})
     with pytest.raises(BadInputError, match="no output folder of planish"), replacement(tmp_path / "out"):

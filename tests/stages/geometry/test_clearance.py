@@ -9,7 +9,19 @@ from hypothesis import strategies as st
 
 from stages.geometry.arcpath import ArcPath, centres, chords, polygon, sweeps
 from stages.geometry.arrays import Values
-from stages.geometry.clearance import Pieces, boxes, clearance, crossing, distances, joined, pieces, point_distances
+from stages.geometry.clearance import (
+    Pieces,
+    between,
+    boxes,
+    clearance,
+    crossing,
+    distances,
+    joined,
+    nearest,
+    pieces,
+    point_distances,
+)
+from tests.near import assert_near
 
 BOUND_MM = 1e-12
 Point = tuple[float, float]
@@ -159,3 +171,25 @@ def test_pieces_of_length_zero_are_left_out() -> None:
 def test_the_sweep_of_the_helper_arc_is_as_asked() -> None:
     values: Values = arc((1, 2), 3.0, 0.0, 270.0).bulge
     assert 4.0 * np.arctan(values[0]) == pytest.approx(1.5 * pi, abs=1e-12)
+
+
+def test_the_nearest_of_several_owners_is_what_two_at_a_time_say() -> None:
+    rng = np.random.default_rng(5)
+    some = [arc(tuple(rng.uniform(0.0, 300.0, 2)), 9.0, float(rng.uniform(0.0, 360.0)), 120.0) for _ in range(40)]
+    to = joined([piece((100.0, 0.0), (100.0, 300.0)), arc((220.0, 150.0), 20.0, 0.0, 200.0)])
+    found = nearest(joined(some), np.arange(40), to, within=30.0)
+    single = {i: clearance(one, to, within=30.0) for i, one in enumerate(some)}
+    assert found == {i: value for i, value in single.items() if value <= 30.0}
+    assert 0 < len(found) < 40
+
+
+def test_pieces_between_points_are_those_of_the_path() -> None:
+    path = ArcPath(
+        np.array([[0.0, 0.0], [50.0, 0.0], [60.0, 30.0], [0.0, 40.0]]), np.array([0.2, -1.0, 0.0, 1e-14]), True
+    )
+    start, end = chords(path)
+    made, known = between(start, end, path.bulges), pieces(path)
+    assert_near(
+        made.centre, np.where(known.bulge[:, None] == 0.0, 0.0, centres(path)), bound=BOUND_MM, why="one formula"
+    )
+    assert made.bulge[3] == 0.0, "flatter than any rounding"

@@ -9,7 +9,8 @@ from shapely import Polygon, contains_properly
 from stages.geometry.arcpath import ArcPath, polygon, transform
 from stages.geometry.rigid import Rigid2
 from stages.model.sheet import NestOptions, Sheet
-from stages.nest.blank import as_blank, bed, fits, turned
+from stages.nest.beds import bed
+from stages.nest.blank import as_blank, fits, turned
 from stages.nest.fit import fitting_angles, hull, kind, tight_angle
 from tests.stages.nest.shapes import angle_piece, disc, rectangle, ring, sector
 
@@ -66,7 +67,7 @@ def test_a_bar_that_fits_along_the_diagonal_only_is_laid_there() -> None:
     angles = fitting_angles(blank, square)
     assert angles
     assert all(fits(turned(blank, angle), square) for angle in angles)
-    assert kind(blank, [square]).on(square)
+    assert kind([blank], [square], NestOptions()).on(square)
 
 
 @given(st.floats(20.0, 200.0), st.floats(2.0, 80.0), st.floats(30.0, 150.0), st.floats(30.0, 150.0))
@@ -83,14 +84,6 @@ def test_no_angle_is_missed_that_dense_trying_finds(length: float, thick: float,
     else:
         angles = fitting_angles(blank, bar_sheet(width - 1.0, height - 1.0))
         assert not angles, "it fits a smaller sheet in an angle between those tried"
-
-
-def test_part_rotations_go_before_those_of_the_nest() -> None:
-    own = rectangle("a", 10.0, 5.0, rotations=(0.0, 450.0))
-    assert as_blank(0, own, NestOptions(rotations=(180.0,))).angles == (0.0, 90.0)
-    free = rectangle("a", 10.0, 5.0).replace(rotations="free")
-    assert as_blank(0, free, NestOptions(rotations=(180.0,))).angles is None
-    assert as_blank(0, rectangle("a", 10.0, 5.0), NestOptions(rotations=())).angles == (0.0,)
 
 
 def test_the_polygon_of_many_arcs_is_kept_short() -> None:

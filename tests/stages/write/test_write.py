@@ -97,7 +97,7 @@ def test_units_extents_version_and_colours_are_explicit() -> None:
     assert tuple(document.modelspace().dxf.extmax) == pytest.approx((100.0, 100.0, 0.0), abs=1e-9)
     assert document.audit().errors == []
     for entity in document.modelspace():
-        assert entity.dxf.color == MACHINE.layers[entity.dxf.layer]
+        assert entity.dxf.color == MACHINE.layers[entity.dxf.layer].colour
         assert document.layers.get(entity.dxf.layer).color == entity.dxf.color
 
 

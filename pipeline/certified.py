@@ -1,0 +1,82 @@
+"""Cut files that were read back and certified: nothing is cut whose gaps were not measured in the file itself.
+
+The write stage compares a file with its drawing; here the contours read from its text are held against the rules of the
+nest, by the certifier that judged the layout.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from stages.model.cutfile import CutFile, Machine
+from stages.model.pattern import FlatPattern
+from stages.model.report import Finding, Metric, Outcome
+from stages.model.sheet import Nesting, NestOptions, SheetLayout
+from stages.nest.legal_files import ReadSheet, certify_contours
+from stages.write.chains import Entity
+from stages.write.closing import closed_again
+from stages.write.readback import read
+from stages.write.sheets import seen, windows
+
+DEFAULT = Machine()
+
+
+def written(
+    patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Machine, options: NestOptions
+) -> Outcome[tuple[CutFile, ...]]:
+    """Return the files of a job, those of its sheets certified as they read; the report tells the gaps and overlaps."""
+    from stages.write import write
+
+    outcome = write(patterns, nesting, replace(machine, common_kerf_mm=options.common_kerf_mm))
+    report = outcome.report
+    if nesting is None or not nesting.layouts or not report.passed:
+        return outcome
+    metrics, findings = certified_files(outcome.product, nesting, patterns, options, machine)
+    told = replace(report, metrics=(*report.metrics, *metrics), findings=(*report.findings, *findings))
+    return replace(outcome, report=told)
+
+
+def certified_files(
+    files: Sequence[CutFile],
+    nesting: Nesting,
+    patterns: Sequence[FlatPattern],
+    options: NestOptions,
+    machine: Machine = DEFAULT,
+) -> tuple[tuple[Metric, ...], tuple[Finding, ...]]:
+    """Return what was measured on the sheets of a nest as their files read, and what is wrong.
+
+    Where each part has a file of its own no file shows a sheet, and nothing is measured.
+    """
+    if machine.file_per == "part":
+        return (), ()
+    texts = {file.path: file.text for file in files}
+    paths = [machine.path(layout.sheet.id, layout.index) for layout in nesting.layouts]
+    back = {path: read(texts[path], machine.layers).entities for path in paths}
+    sheets = [
+        read_sheet(layout, entities, options)
+        for layout, entities in zip(nesting.layouts, _of_sheets(back, paths, nesting, patterns, machine), strict=True)
+    ]
+    return certify_contours(sheets, patterns, options)
+
+
+def _of_sheets(
+    back: Mapping[str, Sequence[Entity]],
+    paths: Sequence[str],
+    nesting: Nesting,
+    patterns: Sequence[FlatPattern],
+    machine: Machine,
+) -> list[Sequence[Entity]]:
+    """Return what each sheet holds, from the file of its own or that of all."""
+    if machine.file_per == "sheet":
+        return [back[path] for path in paths]
+    places = windows(nesting.layouts, {pattern.part: pattern for pattern in patterns})
+    return [tuple(seen(back[path], place)) for path, place in zip(paths, places, strict=True)]
+
+
+def read_sheet(layout: SheetLayout, entities: Sequence[Entity], options: NestOptions) -> ReadSheet:
+    """Return the contours that will be cut, of what a file holds; those that share cuts put together again."""
+    by_layer = {
+        layer: [one.path for one in entities if one.layer == layer and one.closed and one.path is not None]
+        for layer in ("CUT_OUTER", "CUT_INNER")
+    }
+    shared = closed_again(entities, options.kerf_mm).outlines if options.common_line else ()
+    return ReadSheet(layout, [*by_layer["CUT_OUTER"], *(one.path for one in shared)], by_layer["CUT_INNER"])

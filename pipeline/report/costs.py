@@ -1,0 +1,287 @@
+"""What a nest costs: per sheet and per part the stock that is used, what an offcut is worth, cuts, pierces and time.
+
+    net of a sheet     its price (of a roll: of the metres used) less `offcut_credit` x the price of its offcut's area
+    share of a part    for each copy what its area is of that of all parts on its sheet: of the sheet, its price and net
+    time               length of the cuts / speed + pierces x pierce_time; travel between the cuts is not counted
+
+Lengths and pierces of a sheet are those of its file as read back; those of a part are of its own contours, so that
+together they are more where neighbours share a cut.  What is not known is None, and whatever follows from it is too.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import fsum
+from typing import TYPE_CHECKING
+
+from pipeline.files import FileNames, file_names
+from pipeline.rates import Rates
+from pipeline.report.stockfigures import MM_PER_M, cost
+
+if TYPE_CHECKING:
+    from pipeline.run import JobResult
+    from stages.model.pattern import FlatPattern
+    from stages.model.report import StageReport
+    from stages.model.sheet import Sheet, SheetLayout
+
+Document = dict[str, object]
+SECONDS_PER_MINUTE = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Cuts:
+    """Cuts of a sheet or of a part: length in mm, how many; None: not known."""
+
+    length_mm: float | None
+    pierces: float | None
+
+    def seconds(self, rates: Rates) -> float | None:
+        """Return the time that they take."""
+        if self.length_mm is None or self.pierces is None or rates.speed_mm_min is None or rates.pierce_time_s is None:
+            return None
+        return self.length_mm / rates.speed_mm_min * SECONDS_PER_MINUTE + self.pierces * rates.pierce_time_s
+
+
+UNKNOWN = Cuts(None, None)
+
+
+@dataclass(frozen=True, slots=True)
+class SheetCost:
+    """One sheet: its price, what its offcut is worth, and its cuts."""
+
+    layout: "SheetLayout"
+    price: float | None
+    credit: float | None
+    cuts: Cuts
+
+    @property
+    def net(self) -> float | None:
+        """The price less the worth of the offcut."""
+        return None if self.price is None or self.credit is None else self.price - self.credit
+
+
+Share = tuple[float, SheetCost]
+"""What a copy has of a sheet, and the sheet."""
+
+
+@dataclass(frozen=True, slots=True)
+class PartCost:
+    """All copies of one part: their share of the sheets, of price and worth of the offcuts, and their cuts."""
+
+    part: str
+    copies: int
+    sheets: float
+    price: float | None
+    credit: float | None
+    net: float | None
+    cuts: Cuts
+
+
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """The cost of a nest."""
+
+    sheets: tuple[SheetCost, ...]
+    parts: tuple[PartCost, ...]
+    rates: Rates
+
+    @property
+    def price(self) -> float | None:
+        """Of all sheets."""
+        return whole(one.price for one in self.sheets)
+
+    @property
+    def credit(self) -> float | None:
+        """Of all offcuts."""
+        return whole(one.credit for one in self.sheets)
+
+    @property
+    def net(self) -> float | None:
+        """Of all sheets less all offcuts."""
+        return whole(one.net for one in self.sheets)
+
+    @property
+    def cuts(self) -> Cuts:
+        """Of all sheets."""
+        return Cuts(whole(one.cuts.length_mm for one in self.sheets), whole(one.cuts.pierces for one in self.sheets))
+
+
+def job_costs(result: "JobResult") -> Costs | None:
+    """Return the cost of a nested job; None where nothing was nested."""
+    if result.nest.product is None:
+        return None
+    layouts, names = result.nest.product.layouts, file_names(result.parts, result.job)
+    patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
+    written = cuts_of_sheets(result.write.report, layouts, names)
+    return costs(layouts, patterns, written, result.job.rates)
+
+
+def cuts_of_sheets(report: "StageReport", layouts: "Sequence[SheetLayout]", names: FileNames) -> list[Cuts]:
+    """Return the cuts of sheets, as their files, or those of the parts on them, were read back."""
+    sheets = report.detail.get("sheets")
+    if isinstance(sheets, list):
+        return [Cuts(one["cut_length_mm"], one["pierces"]) for one in sheets]
+    if names.machine.file_per == "part":
+        return [_together(cuts_of_files(report, names.part_drawings(layout))) for layout in layouts]
+    return cuts_of_files(report, [names.drawing(layout) or "" for layout in layouts])
+
+
+def cuts_of_files(report: "StageReport", paths: Iterable[str]) -> list[Cuts]:
+    """Return the cuts of files as they were read back; not known for files that were not written."""
+    files = report.detail.get("files")
+    read = files if isinstance(files, dict) else {}
+    return [Cuts(read[path]["cut_length_mm"], read[path]["pierces"]) if path in read else UNKNOWN for path in paths]
+
+
+def _together(some: Sequence[Cuts]) -> Cuts:
+    return Cuts(whole(one.length_mm for one in some), whole(one.pierces for one in some))
+
+
+def costs(
+    layouts: "Sequence[SheetLayout]", patterns: "Mapping[str, FlatPattern]", written: Sequence[Cuts], rates: Rates
+) -> Costs:
+    """Return the cost of a nest.  patterns: by their names; written: the cuts of each sheet's file."""
+    sheets = tuple(
+        SheetCost(layout, cost(layout, patterns), _credit(layout, rates), cuts)
+        for layout, cuts in zip(layouts, written, strict=True)
+    )
+    return Costs(sheets, _parts(sheets, patterns), rates)
+
+
+def whole(values: Iterable[float | None]) -> float | None:
+    """Return the sum, None if one of the values is not known."""
+    listed = list(values)
+    known = [value for value in listed if value is not None]
+    return fsum(known) if len(known) == len(listed) else None
+
+
+def _credit(layout: "SheetLayout", rates: Rates) -> float | None:
+    """Return what the offcut of a sheet is worth; 0 without an offcut."""
+    if layout.offcut is None or rates.offcut_credit == 0.0:
+        return 0.0
+    price = _price_of_area(layout.sheet)
+    area = layout.offcut.width_mm * layout.offcut.height_mm
+    return None if price is None else rates.offcut_credit * price * area
+
+
+def _price_of_area(sheet: "Sheet") -> float | None:
+    """Return the price of a square mm of a rectangle or of a roll, edges included; None where it is not known."""
+    if sheet.price is None:
+        return None
+    return sheet.price / (sheet.height_mm * (MM_PER_M if sheet.is_roll else sheet.width_mm))
+
+
+def _parts(sheets: Sequence[SheetCost], patterns: "Mapping[str, FlatPattern]") -> tuple[PartCost, ...]:
+    """Return the cost of every part that lies on some sheet, in the order of the patterns."""
+    areas = {name: _net_area(pattern) for name, pattern in patterns.items()}
+    shares: defaultdict[str, list[Share]] = defaultdict(list)
+    for sheet in sheets:
+        names = [placed.part for placed in sheet.layout.placements]
+        all_of_them = fsum(areas[name] for name in names)
+        for name in names:
+            shares[name].append((areas[name] / all_of_them, sheet))
+    return tuple(_part(pattern, shares[name]) for name, pattern in patterns.items() if shares[name])
+
+
+def _net_area(pattern: "FlatPattern") -> float:
+    """Return the area of a part without its holes, mm2: outer contours are positive, inner ones negative."""
+    from stages.geometry.arcpath import area
+
+    return fsum(area(contour.path) for contour in (pattern.outer, *pattern.inner))
+
+
+def _part(pattern: "FlatPattern", shares: Sequence[Share]) -> PartCost:
+    """Return the cost of as many copies of a part as there are shares."""
+    from stages.geometry.arcpath import length
+
+    count, contours = len(shares), (pattern.outer, *pattern.inner)
+    cuts = Cuts(count * fsum(length(contour.path) for contour in contours), count * len(contours))
+    return PartCost(
+        pattern.part,
+        count,
+        fsum(share for share, _ in shares),
+        whole(_of(share, sheet.price) for share, sheet in shares),
+        whole(_of(share, sheet.credit) for share, sheet in shares),
+        whole(_of(share, sheet.net) for share, sheet in shares),
+        cuts,
+    )
+
+
+def _of(share: float, amount: float | None) -> float | None:
+    return None if amount is None else share * amount
+
+
+def costs_entry(made: Costs) -> Document:
+    """Return the table as a report has it."""
+    rates = made.rates
+    return {
+        "rates": {
+            "speed_mm_min": rates.speed_mm_min,
+            "pierce_time_s": rates.pierce_time_s,
+            "offcut_credit": rates.offcut_credit,
+        },
+        "sheets": [
+            {
+                "stock": one.layout.sheet.id,
+                "index": one.layout.index,
+                "price": one.price,
+                "offcut_credit": one.credit,
+                "net": one.net,
+                **_cuts_entry(one.cuts, rates),
+            }
+            for one in made.sheets
+        ],
+        "parts": [
+            {
+                "part": one.part,
+                "copies": one.copies,
+                "sheets": one.sheets,
+                "price": one.price,
+                "offcut_credit": one.credit,
+                "net": one.net,
+                **_cuts_entry(one.cuts, rates),
+            }
+            for one in made.parts
+        ],
+        "total": {
+            "sheets": len(made.sheets),
+            "price": made.price,
+            "offcut_credit": made.credit,
+            "net": made.net,
+            **_cuts_entry(made.cuts, rates),
+        },
+    }
+
+
+def _cuts_entry(cuts: Cuts, rates: Rates) -> Document:
+    pierces = None if cuts.pierces is None else int(cuts.pierces)
+    return {"cut_length_mm": cuts.length_mm, "pierces": pierces, "time_s": cuts.seconds(rates)}
+
+
+def cost_lines(result: "JobResult") -> list[str]:
+    """Return the line of a nested job, none of another."""
+    made = job_costs(result)
+    return [] if made is None else [cost_line(made)]
+
+
+def cost_line(made: Costs) -> str:
+    """Return the cost in one line for the terminal; what is not known, and how it could be, is said."""
+    count, cuts = len(made.sheets), made.cuts
+    words = [f"{count} sheet{'' if count == 1 else 's'}"]
+    if made.net is None or made.price is None:
+        words.append("price not known (price under [[stock]])")
+    else:
+        words.append(f"price {made.price:.2f}")
+        words += [f"offcuts worth {made.credit:.2f}, net {made.net:.2f}"] if made.credit else []
+    if cuts.length_mm is not None and cuts.pierces is not None:
+        words.append(f"cut {cuts.length_mm / MM_PER_M:.3f} m, {cuts.pierces:.0f} pierces")
+    seconds = cuts.seconds(made.rates)
+    unknown = "time not known (speed and pierce_time under [process])"
+    words.append(unknown if seconds is None else f"time {_clock(seconds)}")
+    return f"cost  {', '.join(words)}"
+
+
+def _clock(seconds: float) -> str:
+    """Return a time in minutes and seconds."""
+    minutes, rest = divmod(round(seconds), round(SECONDS_PER_MINUTE))
+    return f"{minutes}:{rest:02d} min"

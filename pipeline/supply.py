@@ -1,0 +1,111 @@
+"""What finished jobs are nested on: a file of stock, or the stock that the first of them was nested on.
+
+A file of stock is a job file without parts: `[[stock]]`, `[nest]`, `[process]`, `[dxf]`, `[report]`.  A row that states
+material or thickness serves the groups of that material or thickness only, any other row every group.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta, field
+
+from pipeline.dxftables import DxfTable, alone_troubles, machine_of
+from pipeline.jobfile import ProcessTable, ReportTable, read_as, repeated
+from pipeline.processes import limits
+from pipeline.rates import Rates, rates_of
+from pipeline.stock import options_of, stock_of
+from pipeline.stocktables import NestTable, StockTable
+from stages.model.curves import Table, Trouble
+from stages.model.cutfile import Machine
+from stages.model.report import Finding
+from stages.model.sheet import NestOptions, Sheet
+
+
+class StockFile(Table, frozen=True, kw_only=True):
+    """A file of stock."""
+
+    schema: Literal[1]
+    stock: Annotated[tuple[StockTable, ...], Meta(min_length=1)]
+    units: Literal["mm", "cm", "m", "in"] = "mm"
+    nest: NestTable = field(default_factory=NestTable)
+    process: ProcessTable = ProcessTable()
+    dxf: DxfTable = DxfTable()
+    report: ReportTable = ReportTable()
+
+    def troubles(self) -> Iterator[Trouble]:
+        """Yield names that occur twice, and common lines of no known width."""
+        yield from repeated("stock", "id", [stock.name for stock in self.stock])
+        if self.nest.common_line and self.process.kerf is None and self.process.type is None:
+            hint = "give process.kerf or process.type: neighbours lie one kerf apart"
+            yield Trouble("nest.common_line", "the width of the cut is not known", hint)
+        yield from alone_troubles(self.dxf, common_line=self.nest.common_line)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One kind of stock, and what it is made of as far as that is stated."""
+
+    sheet: Sheet
+    material: str | None = None
+    thickness_mm: float | None = None
+
+    def serves(self, material: str, thickness_mm: float | None) -> bool:
+        """Return whether parts of a material and a thickness may be cut from it."""
+        alike = not self.material or self.material.casefold() == material.casefold()
+        return alike and self.thickness_mm in (None, thickness_mm)
+
+
+@dataclass(frozen=True, slots=True)
+class Supply:
+    """Stock, and how it is to be nested, cut and paid for.
+
+    origin: the file or the job that it comes from.  inputs: name and sha256 of what was read for it.
+    repairs: what of it had to be put right.
+    """
+
+    origin: str
+    rows: tuple[Row, ...]
+    options: NestOptions
+    machine: Machine
+    rates: Rates
+    pictures: bool
+    inputs: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
+    repairs: tuple[Finding, ...] = ()
+
+    def doubled(self) -> list[str]:
+        """Return the stock of which there is a number, and of which no material or thickness is stated."""
+        return [
+            row.sheet.id
+            for row in self.rows
+            if row.sheet.quantity is not None and not row.material and row.thickness_mm is None
+        ]
+
+    def serving(self, material: str, thickness_mm: float | None) -> tuple[Sheet, ...]:
+        """Return the stock for a material and a thickness."""
+        return tuple(row.sheet for row in self.rows if row.serves(material, thickness_mm))
+
+
+def supply_of(file: Path) -> Supply:
+    """Return what a file of stock gives; `BadInputError` with every problem, each with its place."""
+    tables, sources, inputs = read_as(StockFile, file)
+    stock = stock_of(tables.stock, None)
+    kerf = limits(tables.process, None).get("kerf")
+    return Supply(
+        origin=file.name,
+        rows=tuple(_rows(tables.stock, stock.sheets)),
+        options=options_of(tables.nest, None if kerf is None else kerf.value),
+        machine=machine_of(tables.dxf),
+        rates=rates_of(tables.process, tables.nest),
+        pictures="png" in tables.report.formats,
+        inputs=inputs,
+        notes=(*sources.notes, *stock.told),
+        repairs=stock.repairs,
+    )
+
+
+def _rows(tables: Sequence[StockTable], sheets: Sequence[Sheet]) -> Iterator[Row]:
+    for table, sheet in zip(tables, sheets, strict=True):
+        yield Row(sheet, table.material, None if table.thickness is None else float(table.thickness))

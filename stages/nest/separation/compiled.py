@@ -1,0 +1,55 @@
+"""How the kernels of the search become machine code.
+
+A kernel is a plain function on numbers, arrays and tuples of arrays, compiled by numba for the processor at hand the
+first time it is called, and kept on disk for the next time.  Kernels let other threads run meanwhile.  Each carries
+`no_type_check` below the decorator: checkers of shapes wrap functions in what numba cannot compile.
+
+numba looks at the file of a kernel, not at those of the kernels that it calls, to tell whether its code is stale.  So
+the code is kept in a folder named after the digest of all kernels; where it cannot be kept it is compiled each time.
+"""
+
+import os
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+
+HERE = Path(__file__).parent
+
+
+def _folder() -> Path:
+    """Return where the machine code of just these sources is kept."""
+    sources = b"".join(file.read_bytes() for file in sorted(HERE.glob("*.py")))
+    return HERE / "__pycache__" / f"kernels-{sha256(sources).hexdigest()[:16]}"
+
+
+def _kept() -> bool:
+    """Return whether machine code can be kept; tells numba where."""
+    folder = _folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]  # made when numba is loaded
+    return os.access(folder, os.W_OK)
+
+
+KEPT = _kept()
+
+
+SUMS = {"reassoc", "contract", "nsz"}
+"""What the compiler may do with sums: their order, fused products, signs of zero."""
+
+
+def vectorised(function: Kernel) -> Kernel:
+    """Return the function as machine code that may sum in any order, so that its loops take several numbers at once."""
+    return cast(Kernel, numba.njit(cache=KEPT, nogil=True, error_model="numpy", fastmath=SUMS)(function))
+
+
+def compiled(function: Kernel) -> Kernel:
+    """Return the function as machine code; divisions by 0 give inf or NaN, as numpy's do."""
+    return cast(Kernel, numba.njit(cache=KEPT, nogil=True, error_model="numpy")(function))

@@ -1,0 +1,296 @@
+"""What is to be laid where, as polygons, and the flat arrays that the kernels take.
+
+Discs inscribed in a shape are found on a grid, greedily: the largest first, each next one where the distance to the
+edge and to the discs so far is largest.  The distance to the edge of a region is sampled on a grid.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import cos, radians, sin
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon, Polygon
+
+from stages.nest.separation.state import (
+    NOWHERE,
+    RECTANGLE,
+    Bins,
+    Floats,
+    Items,
+    Layout,
+    Pose,
+    Regions,
+    Rules,
+    Shapes,
+    Whole,
+)
+
+HAIR_MM = 1e-7
+"""Edges of a shape lie this far inside the true ones: parts that touch do not overlap."""
+
+MOST_POLES, COVERED, LEAST_POLE = 14, 0.9, 0.05
+"""Discs of a shape: so many, until they cover this share of it, none of less than this share of the largest radius."""
+
+POLE_GRID, FIELD_GRID = 64, 220
+"""Cells along the longer side of a shape for its discs, of a region for its distances."""
+
+KEPT = 64
+"""Discs and fields of so many areas are kept: every thread asks for the same ones, and they take longest of all."""
+
+QUARTERS = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+
+EDGE_OF_NO_LENGTH = np.array([[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0] * 4, [0.0] * 4])
+DISC_OF_NO_RADIUS = np.diag([1.0, 1.0, 0.0])
+"""What an edge and a disc are multiplied by to leave nothing of them but where they begin, or their middle."""
+
+Area: TypeAlias = Polygon | MultiPolygon
+Span = tuple[float, float]
+Ring = Sequence[tuple[float, float]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kind:
+    """One shape about the middle of its box, and for each bin the spans of its angles (deg) and its region.
+
+    regions: the number of a region, RECTANGLE or NOWHERE, for each bin.
+    """
+
+    shape: Polygon
+    spans: tuple[tuple[Span, ...], ...]
+    regions: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Item:
+    """One copy: its kind, the kind it has when turned over (the same: it is not), and whether it stays where it is."""
+
+    kind: int
+    other: int
+    fixed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where an item lies: bin, kind, angle in degrees, middle of its box in the bin."""
+
+    bin: int
+    kind: int
+    angle_deg: float
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Problem:
+    """Kinds, copies, bins (width, height) and the regions in them."""
+
+    kinds: tuple[Kind, ...]
+    items: tuple[Item, ...]
+    bins: tuple[tuple[float, float], ...]
+    regions: tuple[Area, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arrays:
+    """A problem as the kernels take it."""
+
+    shapes: Shapes
+    rules: Rules
+    regions: Regions
+    items: Items
+    bins: Bins
+
+
+def arrays(problem: Problem, hair_mm: float = HAIR_MM) -> Arrays:
+    """Return a problem as flat arrays; hair_mm: how far edges lie inside the true shapes."""
+    items = Items(
+        np.array([item.kind for item in problem.items], dtype=np.int64),
+        np.array([item.other for item in problem.items], dtype=np.int64),
+        np.array([item.fixed for item in problem.items], dtype=np.bool_),
+    )
+    bins = Bins(np.array(problem.bins, dtype=np.float64).reshape(-1, 2))
+    return Arrays(_shapes(problem, hair_mm), _rules(problem), _regions(problem.regions), items, bins)
+
+
+def empty_layout(problem: Problem, given: Arrays) -> Layout:
+    """Return room for a layout; every item has yet to be laid."""
+    count = len(problem.items)
+    edges = np.diff(given.shapes.first)[given.items.kind]
+    poles = np.diff(given.shapes.pole)[given.items.kind]
+    first = np.concatenate([[0], np.cumsum(edges)]).astype(np.int64)
+    pole = np.concatenate([[0], np.cumsum(poles)]).astype(np.int64)
+    zero = np.zeros(count)
+    return Layout(
+        zero.copy(), zero.copy(), zero.copy(), zero + 1.0, zero.copy(),
+        np.zeros(count, dtype=np.int64), given.items.kind.copy(), np.zeros(count, dtype=np.int64),
+        np.zeros((int(first[-1]), 4)), first, np.zeros((3, int(pole[-1]))), pole, np.zeros((count, 4)),
+    )  # fmt: skip
+
+
+def pose_for(given: Arrays) -> Pose:
+    """Return room for any shape in one angle."""
+    edges, poles = int(np.diff(given.shapes.first).max()), int(np.diff(given.shapes.pole).max())
+    most = max(len(given.regions.edges), edges)
+    return Pose(np.zeros((edges, 4)), np.zeros((3, poles)), np.zeros(4), np.zeros((4, most)))
+
+
+def _shapes(problem: Problem, hair_mm: float) -> Shapes:
+    kinds, items = problem.kinds, problem.items
+    smaller = [inner(kind.shape, hair_mm) for kind in kinds]
+    edges = _as_many([edges_of(one) for one in smaller], items, EDGE_OF_NO_LENGTH)
+    tips = [tips_of(kind.shape) for kind in kinds]
+    discs = _as_many([poles(one) for one in smaller], items, DISC_OF_NO_RADIUS)
+    hulls = [kind.shape.convex_hull for kind in kinds]
+    size = [float(np.ptp(np.asarray(hull.exterior.coords), axis=0).max()) for hull in hulls]
+    return Shapes(
+        np.concatenate(edges), _starts(edges), np.concatenate(tips), _starts(tips),
+        np.ascontiguousarray(np.concatenate(discs).T), _starts(discs), np.sqrt([hull.area for hull in hulls]),
+        np.array(size),
+    )  # fmt: skip
+
+
+def _as_many(rows: Sequence[Floats], items: Sequence[Item], blank: Floats) -> list[Floats]:
+    """Return the rows of each kind, those of two kinds that one copy may have made equally many.
+
+    A layout has room for one number of them.  What is added changes nothing: the first row, made blank.
+    """
+    count = [len(one) for one in rows]
+    for item in items:
+        count[item.kind] = count[item.other] = max(count[item.kind], count[item.other])
+    return [
+        np.concatenate([one, np.repeat(one[:1] @ blank, most - len(one), axis=0)])
+        for one, most in zip(rows, count, strict=True)
+    ]
+
+
+def _starts(rows: Sequence[Floats]) -> Whole:
+    return np.concatenate([[0], np.cumsum([len(one) for one in rows])]).astype(np.int64)
+
+
+def inner(shape: Polygon, hair_mm: float = HAIR_MM) -> Polygon:
+    """Return a shape a hair smaller, with as many rings; itself if it is too thin for that."""
+    smaller = shape.buffer(-hair_mm, join_style="mitre")
+    if isinstance(smaller, Polygon) and len(smaller.interiors) == len(shape.interiors) and not smaller.is_empty:
+        return smaller
+    return shape
+
+
+def edges_of(area: Area) -> Floats:
+    """Return the edges of all rings, (n, 4)."""
+    rings = [np.asarray(ring.coords)[:, :2] for part in polygons(area) for ring in (part.exterior, *part.interiors)]
+    return np.concatenate([np.hstack([ring[:-1], ring[1:]]) for ring in rings])
+
+
+def polygons(area: Area) -> list[Polygon]:
+    """Return the polygons of an area."""
+    return [one for one in getattr(area, "geoms", [area]) if isinstance(one, Polygon) and not one.is_empty]
+
+
+def tips_of(shape: Polygon) -> Floats:
+    """Return the corners of the outline, counter-clockwise, with the direction of the edge that leaves each."""
+    ring = shapely.remove_repeated_points(shapely.normalize(shape).exterior, HAIR_MM)
+    points = np.asarray(ring.coords)[:, :2]
+    if not ring.is_ccw:
+        points = points[::-1]
+    way = np.diff(points, axis=0)
+    return np.hstack([points[:-1], way / np.linalg.norm(way, axis=1)[:, None]])
+
+
+@lru_cache(maxsize=KEPT)
+def poles(shape: Polygon) -> Floats:
+    """Return discs inside a shape, (n, 3): middle and radius, the largest first."""
+    low_x, low_y, high_x, high_y = shape.bounds
+    cell = max(high_x - low_x, high_y - low_y) / POLE_GRID
+    x, y = np.meshgrid(np.arange(low_x + cell / 2.0, high_x, cell), np.arange(low_y + cell / 2.0, high_y, cell))
+    points = shapely.points(x, y)
+    shapely.prepare(shape)
+    room = np.where(shapely.contains(shape, points), shapely.distance(shape.boundary, points), -1.0)
+    middle = shape.representative_point()
+    found: list[tuple[float, float, float]] = []
+    covered = 0.0
+    while len(found) < MOST_POLES and covered < COVERED * shape.area:
+        best = int(np.argmax(room))
+        radius = float(room.flat[best])
+        if radius <= (LEAST_POLE * found[0][2] if found else 0.0):
+            break
+        found.append((float(x.flat[best]), float(y.flat[best]), radius))
+        covered += np.pi * radius * radius
+        room = np.minimum(room, np.hypot(x - found[-1][0], y - found[-1][1]) - radius)
+    if not found:
+        found = [(middle.x, middle.y, float(shape.boundary.distance(middle)))]
+    return np.array(found)
+
+
+def _rules(problem: Problem) -> Rules:
+    """Return the spans and regions of each kind in each bin."""
+    count = (len(problem.kinds), len(problem.bins))
+    first, end, spans = (
+        np.zeros(count, dtype=np.int64),
+        np.zeros(count, dtype=np.int64),
+        list[tuple[float, float, float, float]](),
+    )
+    known: dict[tuple[Span, ...], int] = {}
+    for k, kind in enumerate(problem.kinds):
+        for b in range(len(problem.bins)):
+            if kind.spans[b] not in known:
+                known[kind.spans[b]] = len(spans)
+                spans += [_span(span) for span in kind.spans[b]]
+            first[k, b] = known[kind.spans[b]]
+            end[k, b] = first[k, b] + len(kind.spans[b])
+    region = np.array([kind.regions for kind in problem.kinds], dtype=np.int64).reshape(count)
+    return Rules(region, first, end, np.array(spans, dtype=np.float64).reshape(-1, 4))
+
+
+def _span(span: Span) -> tuple[float, float, float, float]:
+    low, high = span
+    c, s = QUARTERS.get(low % 360.0) or (cos(radians(low)), sin(radians(low)))
+    return radians(low), radians(high), c, s
+
+
+def _regions(regions: Sequence[Area]) -> Regions:
+    """Return edges, points of rings and fields of distance of all regions."""
+    if not regions:
+        none, zero = np.zeros((0, 4)), np.zeros(1, dtype=np.int64)
+        return Regions(
+            none, zero, np.zeros((0, 2)), zero, np.zeros(0), np.zeros(0, dtype=np.int64),
+            np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2)), np.zeros(0),
+        )  # fmt: skip
+    edges = [edges_of(region) for region in regions]
+    points = [_ring_points(region) for region in regions]
+    fields = [_field(region) for region in regions]
+    start = np.concatenate([[0], np.cumsum([field.size for field, _, _ in fields])[:-1]]).astype(np.int64)
+    return Regions(
+        np.concatenate(edges), _starts(edges), np.concatenate(points), _starts(points),
+        np.concatenate([field.ravel() for field, _, _ in fields]), start,
+        np.array([field.shape for field, _, _ in fields], dtype=np.int64),
+        np.array([origin for _, origin, _ in fields]), np.array([cell for _, _, cell in fields]),
+    )  # fmt: skip
+
+
+def _ring_points(region: Area) -> Floats:
+    """Return a point of each ring: a shape whose edges cross none is inside if it holds none of them, or outside."""
+    rings = [ring for part in polygons(region) for ring in (part.exterior, *part.interiors)]
+    return np.array([ring.coords[0][:2] for ring in rings], dtype=np.float64).reshape(-1, 2)
+
+
+@lru_cache(maxsize=KEPT)
+def _field(region: Area) -> tuple[Floats, tuple[float, float], float]:
+    """Return the distance to the edge on a grid, positive inside; where it starts, and its cell."""
+    low_x, low_y, high_x, high_y = region.bounds
+    cell = max(high_x - low_x, high_y - low_y) / FIELD_GRID
+    x, y = np.meshgrid(
+        np.arange(low_x - cell, high_x + 2.0 * cell, cell), np.arange(low_y - cell, high_y + 2.0 * cell, cell)
+    )
+    points = shapely.points(x, y)
+    shapely.prepare(region)
+    edge = region.boundary
+    shapely.prepare(edge)
+    away = shapely.distance(edge, points)
+    field = np.where(shapely.contains(region, points), away, -away)
+    return field, (low_x - cell, low_y - cell), cell
+
+
+__all__ = ["NOWHERE", "RECTANGLE", "Arrays", "Item", "Kind", "Problem", "Spot", "arrays", "empty_layout", "pose_for"]
