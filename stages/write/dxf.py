@@ -30,11 +30,12 @@ UNIT_VARIABLES: dict[str, float] = {
     "$LTSCALE": 1.0,
     "$CELTSCALE": 1.0,
     "$PSLTSCALE": 1,
+    "$PSVPSCALE": 1.0,
     "$UNITMODE": 0,
 }
-"""Readers disagree on which of these counts, so all of them say millimetres, 1 : 1."""
+"""Readers disagree on which of these counts, so all of them say millimetres, 1 : 1.  LibreCAD prints at $PSVPSCALE."""
 
-UNKNOWN_TO_R12 = frozenset({"$INSUNITS", "$MEASUREMENT", "$DIMLUNIT", "$CELTSCALE"})
+UNKNOWN_TO_R12 = frozenset({"$INSUNITS", "$MEASUREMENT", "$DIMLUNIT", "$CELTSCALE", "$PSVPSCALE"})
 PUT_INTO_R12 = ("$INSUNITS", "$MEASUREMENT")
 """R12 does not know them, yet readers of today look for them in it; old ones pass over what they do not know."""
 

@@ -5,7 +5,7 @@ as many short lines between such steps, full circles as four cubic curves.  To m
 strays from the steps by no more than `STRAY_STEPS`.
 
 The drawing is put into the middle of the page: LibreCAD 2.2 prints a full circle for an arc that touches the page's
-edge.  Without a scale it prints at $PSVPSCALE, and nothing at all where that is 0.
+edge.
 """
 
 import os
@@ -45,13 +45,25 @@ def available() -> bool:
     return shutil.which("librecad") is not None
 
 
+def printed_width_mm(path: Path) -> float:
+    """Return how wide the drawing is on the page where nobody says a scale."""
+    _print([path], ())
+    reach = np.concatenate([points for _, points in _lines(_page(path.with_suffix(".pdf")))])
+    return float(np.ptp(reach[:, 0])) * STEP_MM * SCALE
+
+
 def read(paths: Sequence[Path]) -> dict[str, Reading]:
     """Return what one run of LibreCAD prints of all files; the letters of texts are not read."""
+    _print(paths, ("-s", str(SCALE), "-c"))
+    return {path.stem: Reading(tuple(_placed(path))) for path in paths}
+
+
+def _print(paths: Sequence[Path], wishes: Sequence[str]) -> None:
+    """Have LibreCAD print files to PDF beside them."""
     folder = paths[0].parent
-    command = ["librecad", "dxf2pdf", "-s", str(SCALE), "-c", "-t", str(folder), *map(str, paths)]
+    command = ["librecad", "dxf2pdf", *wishes, "-t", str(folder), *map(str, paths)]
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen", "HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
     subprocess.run(command, capture_output=True, check=True, timeout=120, env=environment)
-    return {path.stem: Reading(tuple(_placed(path))) for path in paths}
 
 
 def _placed(path: Path) -> Iterator[Piece]:
