@@ -22,7 +22,7 @@ from pipeline.materials import MaterialRow, look_up
 from pipeline.processes import limits
 from stages.model.tolerances import STRAIN_LIMIT, WARP_LIMIT_DEG, Tolerances
 
-LIBRARIES = ("ezdxf", "numpy", "scipy", "shapely", "spyrrow", "trimesh")
+LIBRARIES = ("ezdxf", "numba", "numpy", "scipy", "shapely", "trimesh")
 """What reads, computes or writes numbers of a report beside planish itself."""
 CAD_LIBRARIES = {
     "cadquery-ocp-novtk": (".step", ".stp", ".iges", ".igs"),

@@ -1,7 +1,7 @@
 """Stock, wishes for the nest, and a finished nest: where every copy lies on which sheet.
 
-Sheet frame, mm: the lower left corner of a rectangle or of a roll at the origin, a roll running along x; an outline lies
-where it was drawn.
+Sheet frame, mm: the lower left corner of a rectangle or of a roll at the origin, a roll running along x; an outline
+lies where it was drawn.
 """
 
 from dataclasses import dataclass
@@ -93,7 +93,7 @@ class NestOptions:
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """One copy of a part: `copy` counts from 1; `motion` takes its flat frame to the sheet; fixed: put there by hand."""
+    """One copy of a part: `copy` from 1 on; `motion` takes its flat frame to the sheet; fixed: put there by hand."""
 
     part: str
     copy: int

@@ -61,6 +61,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     put(construct=lambda part, _: Outcome(Made(part), StageReport("construct", part.name)))
     put(verify=lambda surface, _: Outcome(surface, StageReport("verify", surface.name)))
     put(unroll=lambda surface, _: Outcome(Pattern(surface.name), StageReport("unroll", surface.name)))
+    monkeypatch.setattr("stages.write.flavours.as_cut", lambda pattern, _: pattern)
     monkeypatch.setattr("stages.unroll.divide.blanks", lambda certificate, _: (certificate,))
     put(nest=stage("nest", Nest()), write=stage("write", (CutFile("flat/plate.dxf", "0"),)))
     return put

@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
 from typing import Any, TypeVar, cast
 
 import numba
@@ -20,20 +21,31 @@ Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 HERE = Path(__file__).parent
 
+KERNELS = b"@no_type_check\ndef "
+"""What a file with kernels holds."""
+
+TUPLES = "state.py"
+"""The file with the tuples of arrays and the numbers that kernels know."""
+
+PREFIX = "kernels-"
+
 
 def _folder() -> Path:
     """Return where the machine code of just these sources is kept."""
-    sources = b"".join(file.read_bytes() for file in sorted(HERE.glob("*.py")))
-    return HERE / "__pycache__" / f"kernels-{sha256(sources).hexdigest()[:16]}"
+    texts = ((file.name, file.read_bytes()) for file in sorted(HERE.glob("*.py")))
+    sources = b"".join(text for name, text in texts if KERNELS in text or name == TUPLES)
+    return HERE / "__pycache__" / f"{PREFIX}{sha256(sources).hexdigest()[:16]}"
 
 
 def _kept() -> bool:
-    """Return whether machine code can be kept; tells numba where."""
+    """Return whether machine code can be kept; tells numba where, and removes that of earlier sources."""
     folder = _folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return False
+    for old in set(folder.parent.glob(f"{PREFIX}*")) - {folder}:
+        rmtree(old, ignore_errors=True)
     numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]  # made when numba is loaded
     return os.access(folder, os.W_OK)
 
