@@ -8,7 +8,7 @@ Limits: a corner that nothing fits is left free for good; shapes that are grown 
 """
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import monotonic
 
@@ -17,7 +17,6 @@ import numpy as np
 from stages.nest.separation.cornering import corner_fits, first_corner
 from stages.nest.separation.laying import lay
 from stages.nest.separation.problem import Arrays, Problem, Spot, arrays
-from stages.nest.separation.separate import copy_places
 from stages.nest.separation.sharing import (
     Bench,
     Shared,
@@ -25,7 +24,6 @@ from stages.nest.separation.sharing import (
     bench_for,
     parted,
     place,
-    same_again,
     spots_of,
     within,
 )
@@ -47,8 +45,8 @@ ROUNDING_SHARE = 5e-6
 MATCHED = 0.6
 """Shapes count as cut from one another if this share of their edges has a partner of the same length elsewhere."""
 
-WIDER = (2e-5, 1e-4, 5e-4, 2e-3, 1e-2)
-"""Shares of the length that are tried as more room until nothing overlaps."""
+WIDER = (0.0, 1e-6, 1e-5, 2e-5, 5e-5, 1e-4, 1e-3)
+"""Shares by which places are moved apart until nothing overlaps."""
 
 MOST_FITS = 4096
 
@@ -106,17 +104,24 @@ def interlocked(bench: Bench, problem: Problem, shared: Shared, wish: Wish, end:
     spots = assembled(problem, wish.seed, lambda: monotonic() >= end)
     if spots is None:
         return
-    given = within(bench.given, (0,))
-    for item, spot in enumerate(spots):
-        place(given, bench.layout, bench.pose, item, spot)
-    width = used_width(bench.layout, 0)
-    start = same_again(bench.layout)
+    given, height = within(bench.given, (0,)), problem.bins[0][1]
     for more in WIDER:
-        given.bins.size[0, 0] = width * (1.0 + more)
-        copy_places(start, bench.layout)
+        _lay_spread(bench, given, spots, more, height)
+        width = used_width(bench.layout, 0)
+        given.bins.size[0, 0] = width
         if monotonic() < end and parted(bench, given, PATIENCE, EFFORT) == 0.0:
             shared.better(bench.best, used_width(bench.best, 0))
             return
+
+
+def _lay_spread(bench: Bench, given: Arrays, spots: Sequence[Spot], more: float, height: float) -> None:
+    """Lay items a little apart, all places moved away from the corner in proportion: as far up as the bin allows."""
+    for item, spot in enumerate(spots):
+        place(given, bench.layout, bench.pose, item, spot)
+    room = max(height / float(bench.layout.box[:, 3].max()) - 1.0, 0.0)
+    for item, spot in enumerate(spots):
+        up = spot.y * (1.0 + min(more, room))
+        place(given, bench.layout, bench.pose, item, replace(spot, x=spot.x * (1.0 + more), y=up))
 
 
 def assembled(problem: Problem, seed: int, over: Callable[[], bool]) -> list[Spot] | None:

@@ -9,6 +9,7 @@ from time import monotonic
 
 import numpy as np
 
+from stages.nest.separation.problem import Arrays
 from stages.nest.separation.separate import copy_places
 from stages.nest.separation.sharing import Bench, Shared, Wish, parted, same_again, swap_large, within
 from stages.nest.separation.state import Layout
@@ -49,7 +50,7 @@ def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
         if found != seen:
             pool.clear()
         elif not polishing:
-            _disturb(bench, pool)
+            disturb(bench, given, pool)
         seen = found
         given.bins.size[bin_, 0] = shared.width * (1.0 - step)
         left = parted(bench, given, SHORT_PATIENCE if polishing else PATIENCE, EFFORT)
@@ -61,12 +62,12 @@ def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
             del pool[:-POOL]
 
 
-def _disturb(bench: Bench, pool: list[Layout]) -> None:
+def disturb(bench: Bench, given: Arrays, pool: list[Layout]) -> None:
     """Start from another layout, or with items changed about."""
     if pool and bench.rng.random() < AGAIN:
         copy_places(pool[int(bench.rng.integers(len(pool)))], bench.layout)
     if bench.rng.random() < SWAP:
-        swap_large(bench, bench.given)
+        swap_large(bench, given)
 
 
 def last_bin(shared: Shared, wish: Wish) -> int:

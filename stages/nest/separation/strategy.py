@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, Sequence
 from time import monotonic
 
+from stages.nest.separation.emptying import emptied
 from stages.nest.separation.fewer import EFFORT, PATIENCE, fewer
 from stages.nest.separation.interlock import assembled, interlocked, interlocking
 from stages.nest.separation.problem import Problem, Spot, arrays, empty_layout, pose_for
@@ -53,8 +54,12 @@ def _work(problem: Problem, shared: Shared, wish: Wish, number: int) -> None:
     timer = threading.Timer(max(wish.end - begin, 0.0), lambda: bench.stop.__setitem__(0, OVER))
     timer.daemon = True
     timer.start()
-    only_bins = not any(wish.rectangle)
-    fewer(bench, problem, shared, wish.end if only_bins else begin + FEWER_SHARE * (wish.end - begin))
+    fewer_end = wish.end if not any(wish.rectangle) else begin + FEWER_SHARE * (wish.end - begin)
+    if number % 2 and shared.used:
+        emptied(bench, problem, shared, fewer_end)
+        bench.given.bins.size[:] = problem.bins
+    fewer(bench, problem, shared, fewer_end)
+    bench.given.bins.size[:] = problem.bins
     if number == 0 and interlocking(problem):
         interlocked(bench, problem, shared, wish, monotonic() + INTERLOCK_SHARE * (wish.end - monotonic()))
     if shared.used:
