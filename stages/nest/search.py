@@ -21,7 +21,7 @@ from stages.nest.fit import Kind
 from stages.nest.separation import problem as given
 from stages.nest.separation.problem import NOWHERE, RECTANGLE, Item, Problem, Spot
 from stages.nest.separation.wire import Request
-from stages.nest.sheets import Counts, Filled, Plan, Task, less, used_mm
+from stages.nest.sheets import Counts, Filled, Plan, Task, used_mm
 from stages.nest.turns import ANGLE_TOLERANCE_DEG, Turns, contains
 
 MOST_THREADS = 8
@@ -252,6 +252,3 @@ def _outside(angle_deg: float, span: tuple[float, float]) -> float:
     """Return how far an angle is outside a span, in degrees."""
     past = (angle_deg - span[0]) % 360.0
     return 0.0 if past <= span[1] - span[0] else min(past - (span[1] - span[0]), 360.0 - past)
-
-
-__all__ = ["Counts", "Engine", "less", "search_plans"]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from shapely import MultiPolygon, Polygon
+from shapely import Polygon
 
 from stages.nest.separation.problem import Area, Item, Kind, Problem, Spot, polygons
 
@@ -103,6 +103,3 @@ def _area(parts: Sequence[Sequence[Sequence[Sequence[float]]]]) -> Area:
 
 def _spans(spans: Sequence[Sequence[float]]) -> tuple[tuple[float, float], ...]:
     return tuple((low, high) for low, high in spans)
-
-
-__all__ = ["MultiPolygon", "Request", "as_request", "as_spot", "request_line", "spot_rows"]

@@ -1,17 +1,20 @@
 """Pieces that were cut from one another are put together again; others are left alone."""
 
 from collections.abc import Sequence
+from time import monotonic
 
 import pytest
 from shapely import Polygon, affinity, box
 
-from stages.nest.separation.interlock import assembled, interlocking
+from stages.nest.separation.interlock import assembled, interlocked, interlocking
 from stages.nest.separation.problem import RECTANGLE, Item, Kind, Problem, Spot
-from stages.nest.separation.sharing import Wish
-from stages.nest.separation.strategy import improve
+from stages.nest.separation.sharing import Shared, Wish, bench_for, same_again, spots_of
 from tests.bench.nest.jigsaw import cut, turned
 
 QUARTERS = tuple((angle, angle) for angle in (0.0, 90.0, 180.0, 270.0))
+LONG_S = 600.0
+"""It ends by itself; kernels may have to be compiled first."""
+
 PIECES, WIDE, HIGH = 6, 600.0, 300.0
 
 
@@ -53,13 +56,12 @@ def test_a_jigsaw_is_put_together_again(seed: int) -> None:
 
 
 def test_rounded_corners_are_moved_apart_until_nothing_overlaps() -> None:
-    from time import monotonic
-
     problem = jigsaw(1, digits=3)
-    start = [Spot(0, k, 0.0, 150.0 + 280.0 * k, HIGH / 2.0) for k in range(PIECES)]
+    bench = bench_for(problem, 0, 0)
+    wish = Wish(0.0, True, 1, 0, (1.0,), (3.0 * WIDE * HIGH,), (True,))
     told: list[list[Spot]] = []
-    area = 3.0 * WIDE * HIGH
-    improve(problem, start, Wish(monotonic() + 3.0, True, 1, 0, (1.0,), (area,), (True,)), told.append)
+    shared = Shared(same_again(bench.layout), (0,), wish, lambda found: told.append(spots_of(found)))
+    interlocked(bench, problem, shared, wish, monotonic() + LONG_S)
     shapes = laid(problem, told[-1])
     assert overlap(shapes) < 1e-9, "but for rounding"
     assert max(shape.bounds[2] for shape in shapes) < 1.002 * WIDE
