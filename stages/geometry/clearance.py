@@ -270,8 +270,9 @@ def _arcs_meet(a: Pieces, b: Pieces) -> Mask:
     """Return which arcs meet: the two points of their circles, on both arcs."""
     between = b.centre - a.centre
     apart = norm(between)
-    safe = np.where(apart > 0.0, apart, 1.0)
-    along = (apart**2 + (a.radius - b.radius) * (a.radius + b.radius)) / (2.0 * safe)
+    within_reach = (apart > 0.0) & (np.abs(a.radius - b.radius) <= apart) & (apart <= a.radius + b.radius)
+    safe = np.where(within_reach, apart, np.inf)  # what cannot meet: nothing is divided by next to nothing
+    along = apart * (apart / safe) / 2.0 + (a.radius - b.radius) * ((a.radius + b.radius) / safe) / 2.0
     square = (a.radius - along) * (a.radius + along)
     towards = between / safe[:, None]
     left = np.stack([-towards[:, 1], towards[:, 0]], axis=1) * np.sqrt(np.maximum(square, 0.0))[:, None]
@@ -279,5 +280,5 @@ def _arcs_meet(a: Pieces, b: Pieces) -> Mask:
     met = np.zeros(apart.shape, dtype=bool)
     for point in (foot + left, foot - left):
         met |= _on_side(point, a) & _on_side(point, b)
-    real: Mask = met & (square >= 0.0) & (apart > 0.0)
+    real: Mask = met & (square >= 0.0) & within_reach
     return real

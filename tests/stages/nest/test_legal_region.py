@@ -4,7 +4,7 @@ from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from stages.geometry.arcpath import ArcPath, transform
@@ -102,6 +102,7 @@ def test_a_tip_that_reaches_into_an_edge_is_found_by_the_edge() -> None:
 
 
 @given(st.floats(-130.0, 130.0), st.floats(-130.0, 130.0), st.floats(0.0, 360.0))
+@example(0.0, 3.533745470554566e-153, 0.0)
 @settings(max_examples=60, deadline=None)
 def test_a_square_and_a_disc_by_the_distance_of_the_centre(x: float, y: float, angle: float) -> None:
     square = region(at(contour(box(100.0, 100.0, -50.0, -50.0)).path, 0.0, 0.0, angle))
