@@ -57,11 +57,30 @@ SUMS = {"reassoc", "contract", "nsz"}
 """What the compiler may do with sums: their order, fused products, signs of zero."""
 
 
+def compiled(function: Kernel) -> Kernel:
+    """Return the function as machine code; divisions by 0 give inf or NaN, as numpy's do.
+
+    It makes no arrays and counts no references: to count those of tuples of arrays takes longer than most kernels do.
+    """
+    return _made(function, _nrt=False)
+
+
+def inlined(function: Kernel) -> Kernel:
+    """Return the function as machine code that is put into its callers: to hand over many arrays takes its time."""
+    return _made(function, _nrt=False, forceinline=True)
+
+
 def vectorised(function: Kernel) -> Kernel:
     """Return the function as machine code that may sum in any order, so that its loops take several numbers at once."""
-    return cast(Kernel, numba.njit(cache=KEPT, nogil=True, error_model="numpy", fastmath=SUMS)(function))
+    return _made(function, _nrt=False, fastmath=SUMS)
 
 
-def compiled(function: Kernel) -> Kernel:
-    """Return the function as machine code; divisions by 0 give inf or NaN, as numpy's do."""
-    return cast(Kernel, numba.njit(cache=KEPT, nogil=True, error_model="numpy")(function))
+def allocating(function: Kernel) -> Kernel:
+    """Return the function as machine code, for kernels that make arrays and are not called often."""
+    return _made(function, _nrt=True)
+
+
+def _made(function: Kernel, **options: object) -> Kernel:
+    """Return the function as machine code; what it calls takes over the options that it does not set itself."""
+    always: dict[str, Any] = {"cache": KEPT, "nogil": True, "error_model": "numpy", **options}
+    return cast(Kernel, numba.njit(**always)(function))

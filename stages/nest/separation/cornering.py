@@ -4,7 +4,7 @@ from typing import no_type_check
 
 import numpy as np
 
-from stages.nest.separation.compiled import compiled
+from stages.nest.separation.compiled import allocating, compiled
 from stages.nest.separation.laying import cost_at, turn_into
 from stages.nest.separation.moving import bounds_in
 from stages.nest.separation.touching import is_inside
@@ -50,7 +50,7 @@ def common_length(one, i, other, j, dx, dy, near):
     return max(0.0, min(length, begin) - max(0.0, end))
 
 
-@compiled
+@allocating
 @no_type_check
 def touching_length(shapes, layout, bins, pose, kind, bin_, x, y, near):
     """Return how much of the outline of a pose at (x, y) runs along other items or the edges of its bin, mm."""
@@ -119,7 +119,7 @@ def first_corner(shapes, layout, bins, bin_, step, after):
 
 @compiled
 @no_type_check
-def corner_fits(shapes, rules, regions, layout, bins, weights, pose, kinds, bin_, x, y, near, out):
+def corner_fits(tables, shapes, rules, regions, layout, bins, weights, pose, kinds, bin_, x, y, near, out):
     """Fill in (kind, span, x, y, length touching, outline) of all that fits with a corner at (x, y); how many."""
     count = 0
     for kind in kinds:
@@ -135,7 +135,7 @@ def corner_fits(shapes, rules, regions, layout, bins, weights, pose, kinds, bin_
                 my = y - (sin * shapes.tips[p, 0] + cos * shapes.tips[p, 1])
                 if mx < low_x - near or mx > high_x + near or my < low_y - near or my > high_y + near:
                     continue
-                if cost_at(shapes, rules, regions, layout, weights, pose, -1, kind, bin_, mx, my, 0.0) > 0.0:
+                if cost_at(tables, shapes, rules, regions, layout, weights, pose, -1, kind, bin_, mx, my, 0.0) > 0.0:
                     continue
                 if count < out.shape[0]:
                     length = touching_length(shapes, layout, bins, pose, kind, bin_, mx, my, near)

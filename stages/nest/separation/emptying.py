@@ -7,12 +7,12 @@ failure two large items change places, or a layout that did not quite work out i
 
 from time import monotonic
 
-from stages.nest.separation.fewer import EFFORT, FULLEST, PATIENCE
+from stages.nest.separation.fewer import EFFORT, FULLEST, PATIENCE, STRIKES
+from stages.nest.separation.pool import Pool
 from stages.nest.separation.problem import Problem
 from stages.nest.separation.separate import copy_places
 from stages.nest.separation.sharing import Bench, Shared, parted, same_again, within
 from stages.nest.separation.shorter import disturb, used_width
-from stages.nest.separation.state import Layout
 
 FIRST_STEP, LEAST_STEP, GROW = 0.1, 0.004, 1.3
 """Shares by which the width shrinks, and how much a share grows after a success."""
@@ -37,13 +37,14 @@ def _narrowed(bench: Bench, shared: Shared, task: tuple[int, tuple[int, ...], in
     begun, used, bin_ = task
     given = within(bench.given, used)
     kept, step, failures = same_again(bench.layout), FIRST_STEP, 0
-    pool: list[Layout] = []
+    pool = Pool()
     while monotonic() < end and shared.found == begun and failures < FAILURES:
         copy_places(kept, bench.layout)
         if failures:
             disturb(bench, given, pool)
         given.bins.size[bin_, 0] = used_width(kept, bin_) * (1.0 - step)
-        if parted(bench, given, PATIENCE, EFFORT) == 0.0:
+        left = parted(bench, given, PATIENCE, EFFORT, STRIKES)
+        if left == 0.0:
             if not (bench.best.bin == bin_).any():
                 shared.better(bench.best)
                 return
@@ -52,8 +53,7 @@ def _narrowed(bench: Bench, shared: Shared, task: tuple[int, tuple[int, ...], in
             step, failures = min(step * GROW, FIRST_STEP), 0
         elif bench.stop[0] == 0:
             step, failures = max(step / 2.0, LEAST_STEP), failures + 1
-            pool.append(same_again(bench.best))
-            del pool[:-FAILURES]
+            pool.keep(left, bench.best)
 
 
 def emptiest(bench: Bench, problem: Problem, shared: Shared) -> int:

@@ -12,16 +12,15 @@ from time import monotonic
 
 import numpy as np
 
+from stages.nest.separation.pool import Pool
 from stages.nest.separation.problem import Problem
-from stages.nest.separation.separate import copy_places
-from stages.nest.separation.sharing import Bench, Shared, Wish, anywhere, parted, same_again, swap_large, within
-from stages.nest.separation.state import Layout
+from stages.nest.separation.sharing import Bench, Shared, Wish, anywhere, parted, swap_large, within
 
 EFFORT = (40, 12, 8)
 """Places tried in a move: anywhere, near by, touching a neighbour."""
 
-PATIENCE = 100
-"""Rounds without progress until an attempt is given up."""
+PATIENCE, STRIKES = 100, 3
+"""Rounds without progress until an attempt goes on from its best layout; how often in a row it may do so in vain."""
 
 SETS, FIRST_SETS = 12, 3
 """So many choices of bins are tried at all; and each of these before any is tried again."""
@@ -32,7 +31,7 @@ SPARE, MOST_CHOICES = 4, 20_000
 FULLEST = 0.97
 """Bins whose area is filled by more than this are not tried."""
 
-POOL = 4
+KEPT = 12
 """Layouts of a choice that are kept."""
 
 ANEW, ELSEWHERE = 0.2, 0.25
@@ -44,21 +43,10 @@ SWAP, MOST_MOVED = 0.6, 4
 
 @dataclass(slots=True)
 class Choice:
-    """Some bins, and the least bad layouts on them with their overlap, the least first."""
+    """Some bins, and the least bad layouts on them."""
 
     bins: tuple[int, ...]
-    pool: list[tuple[float, Layout]] = field(default_factory=list)
-
-    @property
-    def least(self) -> float:
-        """The least overlap so far."""
-        return self.pool[0][0] if self.pool else np.inf
-
-    def keep(self, left: float, layout: Layout) -> None:
-        """Keep a copy of a layout if it is among the least bad."""
-        self.pool.append((left, same_again(layout)))
-        self.pool.sort(key=lambda one: one[0])
-        del self.pool[POOL:]
+    pool: Pool = field(default_factory=lambda: Pool(most=KEPT))
 
 
 def fewer(bench: Bench, problem: Problem, shared: Shared, end: float) -> None:
@@ -77,27 +65,27 @@ def _tried(bench: Bench, choices: list[Choice], shared: Shared, over: Callable[[
         choice = _pick(bench, choices)
         given = within(bench.given, choice.bins)
         shared.take(bench.layout)
-        if choice.pool and bench.rng.random() >= ANEW:
-            copy_places(choice.pool[int(bench.rng.integers(len(choice.pool)))][1], bench.layout)
+        if choice.pool.layouts and bench.rng.random() >= ANEW:
+            choice.pool.take(bench.layout, bench.rng)
             _disturb(bench, choice)
         for item in np.flatnonzero(~np.isin(bench.layout.bin, choice.bins)):
             anywhere(bench, given, int(item))
-        left = parted(bench, given, PATIENCE, EFFORT)
+        left = parted(bench, given, PATIENCE, EFFORT, STRIKES)
         if left == 0.0:
             shared.better(bench.best)
         else:
-            choice.keep(left, bench.best)
+            choice.pool.keep(left, bench.best)
     return False
 
 
 def _pick(bench: Bench, choices: list[Choice]) -> Choice:
     """Return the choice to try next."""
-    untried = next((choice for choice in choices[:FIRST_SETS] if not choice.pool), None)
+    untried = next((choice for choice in choices[:FIRST_SETS] if not choice.pool.layouts), None)
     if untried is not None:
         return untried
     if bench.rng.random() < ELSEWHERE:
         return choices[int(bench.rng.integers(len(choices)))]
-    return min(choices, key=lambda choice: choice.least)
+    return min(choices, key=lambda choice: choice.pool.least)
 
 
 def _disturb(bench: Bench, choice: Choice) -> None:

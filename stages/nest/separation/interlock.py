@@ -168,7 +168,7 @@ def _successors(
         if not np.isfinite(x):
             return []
         count = corner_fits(
-            given.shapes, given.rules, given.regions, layout, given.bins, bench.weights, bench.pose,
+            bench.tables, given.shapes, given.rules, given.regions, layout, given.bins, bench.weights, bench.pose,
             np.array(sorted(left), dtype=np.int64), 0, x, y, NEAR_SHARE * height, out,
         )  # fmt: skip
         if count:

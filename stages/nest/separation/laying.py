@@ -4,12 +4,10 @@ from typing import no_type_check
 
 import numpy as np
 
-from stages.nest.separation.compiled import compiled
+from stages.nest.separation.compiled import compiled, inlined
 from stages.nest.separation.state import NOWHERE, RECTANGLE
-from stages.nest.separation.touching import FIRST_POLES, depth, discs_overlap, edges_cross, is_inside
-
-LEAST_DEPTH = 0.01
-"""Shapes that touch cost what an overlap of this share of their size costs: no overlap is cheap because it is small."""
+from stages.nest.separation.tables import looked_up
+from stages.nest.separation.touching import FIRST_POLES, LEAST_DEPTH, discs_overlap, edges_cross, is_inside, severity
 
 WALL = 2.0
 """What leaves its bin costs so much more than what lies on another part: that part may move, the bin does not."""
@@ -18,10 +16,39 @@ CELLS = 1.5
 """The distance to the edge is read from a grid: within so many cells of 0 the edges themselves are asked."""
 
 
+@inlined
+@no_type_check
+def pose_in(tables, shapes, kind, span, cos, sin, pose):
+    """Take a shape turned about its middle for a pose: but its box where tables may be all that is asked."""
+    if tables.relation[span, span] < 0:
+        turn_into(shapes, kind, cos, sin, pose)
+        return
+    for k in range(4):
+        pose.box[k] = tables.box[kind, span, k]
+    pose.turn[0] = cos
+    pose.turn[1] = sin
+    pose.span[0] = span
+    pose.filled[0] = 0
+
+
+@compiled
+@no_type_check
+def complete(shapes, kind, pose):
+    """Fill a pose that has but its box."""
+    if pose.filled[0] == 0:
+        span = pose.span[0]
+        turn_into(shapes, kind, pose.turn[0], pose.turn[1], pose)
+        pose.span[0] = span
+
+
 @compiled
 @no_type_check
 def turn_into(shapes, kind, cos, sin, pose):
     """Fill a pose with a shape turned about its middle."""
+    pose.turn[0] = cos
+    pose.turn[1] = sin
+    pose.span[0] = -1
+    pose.filled[0] = 1
     low_x = low_y = np.inf
     high_x = high_y = -np.inf
     at = shapes.first[kind]
@@ -107,10 +134,31 @@ def overlap(shapes, layout, j, pose, kind, x, y):
         touch = is_inside(pose.edges, 0, edges, layout.edges[e0, 0] - x, layout.edges[e0, 1] - y)
     if not touch:
         return 0.0
-    other = layout.kind[j]
-    eps = LEAST_DEPTH * max(shapes.size[kind], shapes.size[other])
-    deep = depth(layout.poles, p0, p1, pose.poles, 0, poles, x, y, eps)
-    return np.sqrt(deep + eps * eps) * np.sqrt(shapes.weight[kind] * shapes.weight[other])
+    return severity(shapes, layout.kind[j], kind, layout.poles, p0, p1, pose.poles, 0, poles, x, y)
+
+
+@inlined
+@no_type_check
+def overlap_with(tables, shapes, layout, j, pose, kind, x, y):
+    """Return how badly a pose at (x, y) overlaps item j, from a table if there can be one."""
+    own = pose.span[0]
+    span = layout.span[j]
+    if own >= 0 and tables.relation[span, own] >= 0:
+        other = layout.kind[j]
+        dx = x - layout.x[j]
+        dy = y - layout.y[j]
+        if other <= kind:
+            table = tables.number[other, kind, tables.relation[span, own]]
+            cos = layout.cos[j]
+            sin = layout.sin[j]
+        else:
+            table = tables.number[kind, other, tables.relation[own, span]]
+            cos = -pose.turn[0]
+            sin = -pose.turn[1]
+        if table >= 0:
+            return looked_up(tables, table, cos * dx + sin * dy, cos * dy - sin * dx)
+    complete(shapes, kind, pose)
+    return overlap(shapes, layout, j, pose, kind, x, y)
 
 
 @compiled
@@ -163,7 +211,10 @@ def leaves(shapes, regions, k, pose, kind, x, y):
 def wall(shapes, rules, regions, pose, kind, bin_, x, y):
     """Return how badly a pose at (x, y) leaves what it may lie on in a bin; 0 if it does not."""
     k = rules.region[kind, bin_]
-    if k == RECTANGLE or not leaves(shapes, regions, k, pose, kind, x, y):
+    if k == RECTANGLE:
+        return 0.0
+    complete(shapes, kind, pose)
+    if not leaves(shapes, regions, k, pose, kind, x, y):
         return 0.0
     eps = LEAST_DEPTH * shapes.size[kind]
     deep = 0.0
@@ -176,9 +227,9 @@ def wall(shapes, rules, regions, pose, kind, bin_, x, y):
     return WALL * np.sqrt(deep + eps * eps) * shapes.weight[kind]
 
 
-@compiled
+@inlined
 @no_type_check
-def cost_at(shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, y, limit):
+def cost_at(tables, shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, y, limit):
     """Return the weighted overlap of an item in a pose at (x, y); what is above the limit may be too small."""
     cost = 0.0
     if rules.region[kind, bin_] != RECTANGLE:
@@ -196,7 +247,7 @@ def cost_at(shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, 
             continue
         if layout.bin[j] != bin_ or j == item:
             continue
-        found = overlap(shapes, layout, j, pose, kind, x, y)
+        found = overlap_with(tables, shapes, layout, j, pose, kind, x, y)
         if found > 0.0:
             cost += found * weights.pair[item, j]
             if cost >= limit:

@@ -9,8 +9,8 @@ from typing import no_type_check
 
 import numpy as np
 
-from stages.nest.separation.compiled import compiled
-from stages.nest.separation.laying import cost_at, lay, may_lie, turn_into
+from stages.nest.separation.compiled import allocating, compiled, inlined
+from stages.nest.separation.laying import cost_at, lay, may_lie, pose_in, turn_into
 
 KEPT = 3
 """Places that are walked downhill."""
@@ -50,7 +50,7 @@ ALONG_X, ALONG_Y, FALLING, WAYS = 0, 1, 2, 4
 """Ways of a step: along the axes, along the falling and the rising diagonal."""
 
 
-@compiled
+@inlined
 @no_type_check
 def bounds_in(bins, pose, bin_):
     """Return where the middle of a pose may be in a bin, least and most x and y; empty if it does not fit."""
@@ -75,7 +75,7 @@ def sticks_out(bins, layout, item):
     return far if far > 2.0 * FITS else 0.0
 
 
-@compiled
+@inlined
 @no_type_check
 def any_turn(rules, kind, bin_):
     """Return a random span of a kind in a bin, an angle of it, its cosine and sine."""
@@ -138,10 +138,10 @@ def contact(shapes, rules, layout, item, kind, bin_, span, angle):
 
 @compiled
 @no_type_check
-def walk(shapes, rules, regions, layout, bins, weights, pose, item, place, cost, step, end):
+def walk(tables, shapes, rules, regions, layout, bins, weights, pose, item, place, cost, step, end):
     """Return the place and cost at the end of a walk downhill; the pose is left as it is there, or nearly so."""
     kind, bin_, span, angle, cos, sin, x, y = place
-    turn_into(shapes, kind, cos, sin, pose)
+    pose_in(tables, shapes, kind, span, cos, sin, pose)
     low, high = rules.span[span, 0], rules.span[span, 1]
     size = shapes.size[kind]
     step_x = step_y = step * size
@@ -162,7 +162,7 @@ def walk(shapes, rules, regions, layout, bins, weights, pose, item, place, cost,
                     continue
                 nx = min(max(x, lx), hx)
                 ny = min(max(y, ly), hy)
-                found = cost_at(shapes, rules, regions, layout, weights, pose, item, kind, bin_, nx, ny, cost)
+                found = cost_at(tables, shapes, rules, regions, layout, weights, pose, item, kind, bin_, nx, ny, cost)
                 if found < cost:
                     cost, x, y, angle, cos, sin, good = found, nx, ny, a, c, s, True
                     low_x, high_x, low_y, high_y = lx, hx, ly, hy
@@ -179,7 +179,7 @@ def walk(shapes, rules, regions, layout, bins, weights, pose, item, place, cost,
             ny = min(max(y + sign * ay, low_y), high_y)
             if nx == x and ny == y:
                 continue
-            found = cost_at(shapes, rules, regions, layout, weights, pose, item, kind, bin_, nx, ny, cost)
+            found = cost_at(tables, shapes, rules, regions, layout, weights, pose, item, kind, bin_, nx, ny, cost)
             if found < cost:
                 cost, x, y, good = found, nx, ny, True
                 break
@@ -191,7 +191,7 @@ def walk(shapes, rules, regions, layout, bins, weights, pose, item, place, cost,
     return (kind, bin_, span, angle, cos, sin, x, y), cost
 
 
-@compiled
+@inlined
 @no_type_check
 def draw(shapes, rules, items, layout, bins, item, here, sort):
     """Return (found, place) of a random place of a sort: FAR, NEARBY or TOUCHING; x and y count for the last alone."""
@@ -213,7 +213,7 @@ def draw(shapes, rules, items, layout, bins, item, here, sort):
     return found, (kind, bin_, span, angle, cos, sin, x, y)
 
 
-@compiled
+@inlined
 @no_type_check
 def moved_in(shapes, bins, pose, place, sort):
     """Return (found, x, y) within the bin for a place of a sort whose shape is in the pose."""
@@ -231,9 +231,9 @@ def moved_in(shapes, bins, pose, place, sort):
     return low_x - FITS <= x <= high_x + FITS and low_y - FITS <= y <= high_y + FITS, x, y
 
 
-@compiled
+@allocating
 @no_type_check
-def best_draws(shapes, rules, regions, items, layout, bins, weights, pose, item, here, cost0, effort):
+def best_draws(tables, shapes, rules, regions, items, layout, bins, weights, pose, item, here, cost0, effort):
     """Return the best places drawn, with their costs; the first of them is where the item lies or better."""
     costs = np.full(KEPT, np.inf)
     costs[0] = cost0
@@ -243,12 +243,12 @@ def best_draws(shapes, rules, regions, items, layout, bins, weights, pose, item,
         found, place = draw(shapes, rules, items, layout, bins, item, here, sort)
         if not found:
             continue
-        turn_into(shapes, place[0], place[4], place[5], pose)
+        pose_in(tables, shapes, place[0], place[2], place[4], place[5], pose)
         found, x, y = moved_in(shapes, bins, pose, place, sort)
         if not found:
             continue
         kind, bin_ = place[0], place[1]
-        cost = cost_at(shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, y, costs[KEPT - 1])
+        cost = cost_at(tables, shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, y, costs[KEPT - 1])
         if cost >= costs[KEPT - 1]:
             continue
         k = KEPT - 1
@@ -263,32 +263,46 @@ def best_draws(shapes, rules, regions, items, layout, bins, weights, pose, item,
     return costs, places
 
 
-@compiled
+@allocating
 @no_type_check
-def move(shapes, rules, regions, items, layout, bins, weights, pose, item, effort):
+def move(tables, shapes, rules, regions, items, layout, bins, weights, pose, item, effort):
     """Move an item to the best place found and return its cost; effort: how many places of each sort are tried."""
     kind, bin_, x, y = layout.kind[item], layout.bin[item], layout.x[item], layout.y[item]
     here = (kind, bin_, layout.span[item], layout.angle[item], layout.cos[item], layout.sin[item], x, y)
-    turn_into(shapes, kind, here[4], here[5], pose)
-    cost = cost_at(shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, y, np.inf)
+    pose_in(tables, shapes, kind, here[2], here[4], here[5], pose)
+    cost = cost_at(tables, shapes, rules, regions, layout, weights, pose, item, kind, bin_, x, y, np.inf)
     if sticks_out(bins, layout, item) > 0.0:
         cost = np.inf
     if cost == 0.0:
         return 0.0
-    costs, places = best_draws(shapes, rules, regions, items, layout, bins, weights, pose, item, here, cost, effort)
+    costs, places = best_draws(
+        tables, shapes, rules, regions, items, layout, bins, weights, pose, item, here, cost, effort
+    )
     best = np.inf
     place = here
     for k in range(KEPT):
         if costs[k] < np.inf and best > 0.0:
             end, cost = walk(
-                shapes, rules, regions, layout, bins, weights, pose, item, places[k], costs[k], COARSE, COARSE_END
+                tables,
+                shapes,
+                rules,
+                regions,
+                layout,
+                bins,
+                weights,
+                pose,
+                item,
+                places[k],
+                costs[k],
+                COARSE,
+                COARSE_END,
             )
             if cost < best:
                 best = cost
                 place = end
     if best == np.inf:
         return best
-    place, best = walk(shapes, rules, regions, layout, bins, weights, pose, item, place, best, FINE, FINE_END)
+    place, best = walk(tables, shapes, rules, regions, layout, bins, weights, pose, item, place, best, FINE, FINE_END)
     kind, bin_, span, angle, cos, sin, x, y = place
     lay(shapes, layout, pose, item, kind, bin_, span, angle, cos, sin, x, y)
     return best

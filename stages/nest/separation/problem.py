@@ -134,7 +134,15 @@ def pose_for(given: Arrays) -> Pose:
     """Return room for any shape in one angle."""
     edges, poles = int(np.diff(given.shapes.first).max()), int(np.diff(given.shapes.pole).max())
     most = max(len(given.regions.edges), edges)
-    return Pose(np.zeros((edges, 4)), np.zeros((3, poles)), np.zeros(4), np.zeros((4, most)))
+    return Pose(
+        np.zeros((edges, 4)),
+        np.zeros((3, poles)),
+        np.zeros(4),
+        np.zeros((4, most)),
+        np.zeros(2),
+        np.zeros(1, dtype=np.int64),
+        np.zeros(1, dtype=np.int64),
+    )
 
 
 def _shapes(problem: Problem, hair_mm: float) -> Shapes:

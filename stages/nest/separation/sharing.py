@@ -10,7 +10,8 @@ from stages.nest.separation.laying import lay
 from stages.nest.separation.moving import EITHER
 from stages.nest.separation.problem import Arrays, Problem, Spot, arrays, empty_layout, pose_for
 from stages.nest.separation.separate import copy_places, press_in, seed_all, separate
-from stages.nest.separation.state import NOWHERE, Layout, Pose, Rules, Weights, Whole
+from stages.nest.separation.state import NOWHERE, Layout, Pose, Rules, Tables, Weights, Whole
+from stages.nest.separation.tabling import tables_for
 
 MOST_ROUNDS = 100_000
 """No attempt comes near so many rounds before its patience ends."""
@@ -92,18 +93,19 @@ class Bench:
     best: Layout
     weights: Weights
     pose: Pose
+    tables: Tables
     rng: np.random.Generator
     stop: Whole
 
 
-def bench_for(problem: Problem, seed: int, number: int) -> Bench:
-    """Return what one thread works with; seeds its random numbers."""
+def bench_for(problem: Problem, seed: int, number: int, tables: Tables | None = None) -> Bench:
+    """Return what one thread works with; seeds its random numbers.  Threads of one search share their tables."""
     given = arrays(problem)
     count = len(problem.items)
     seed_all(seed * SEEDS + number)
     return Bench(
         given, empty_layout(problem, given), empty_layout(problem, given),
-        Weights(np.ones((count, count)), np.ones(count)), pose_for(given),
+        Weights(np.ones((count, count)), np.ones(count)), pose_for(given), tables or tables_for(problem, given),
         np.random.default_rng([seed, number]), np.zeros(1, dtype=np.int64),
     )  # fmt: skip
 
@@ -124,7 +126,7 @@ def within(given: Arrays, chosen: Sequence[int]) -> Arrays:
     return Arrays(given.shapes, rules, given.regions, given.items, given.bins)
 
 
-def parted(bench: Bench, given: Arrays, patience: int, effort: tuple[int, int, int]) -> float:
+def parted(bench: Bench, given: Arrays, patience: int, effort: tuple[int, int, int], strikes: int = 1) -> float:
     """Return the least overlap of the items of the layout that can be reached; that layout is `best` of the bench."""
     press_in(given.shapes, bench.layout, given.bins, bench.pose, given.items.fixed)
     bench.weights.pair[:] = 1.0
@@ -132,8 +134,8 @@ def parted(bench: Bench, given: Arrays, patience: int, effort: tuple[int, int, i
     if bench.stop[0] != OVER:
         bench.stop[0] = 0
     left = separate(
-        given.shapes, given.rules, given.regions, given.items, bench.layout, bench.best, given.bins,
-        bench.weights, bench.pose, patience, MOST_ROUNDS, np.array(effort), bench.stop,
+        bench.tables, given.shapes, given.rules, given.regions, given.items, bench.layout, bench.best, given.bins,
+        bench.weights, bench.pose, patience, strikes, MOST_ROUNDS, np.array(effort), bench.stop,
     )  # fmt: skip
     return float(left)
 

@@ -1,36 +1,38 @@
 """Use less of the width of the last rectangle: a roll, or the emptiest of several sheets.
 
-Its width shrinks by a share that halves after each failure.  After a failure the next attempt starts from the best
-layout or from one that did not quite work out, mostly with two large items changed about.  In the last part of the time
-only small shares are tried, from the best layout itself.
+Its width shrinks by a share that halves after each failure down to a small one, and what lies beyond a random line
+across it moves back by as much.  After a failure the next attempt starts from a layout that did not quite work out, one
+of the least bad ones more often, with two large items changed about.  In the last part of the time only small shares
+are tried, from the best layout itself.
+
+Source: the two phases, the random line and the choice of the next layout follow those of `touching`.
 """
 
 from time import monotonic
 
 import numpy as np
 
+from stages.nest.separation.pool import Pool
 from stages.nest.separation.problem import Arrays
-from stages.nest.separation.separate import copy_places
-from stages.nest.separation.sharing import Bench, Shared, Wish, parted, same_again, swap_large, within
+from stages.nest.separation.separate import close_up
+from stages.nest.separation.sharing import Bench, Shared, Wish, parted, swap_large, within
 from stages.nest.separation.state import Layout
 
 EFFORT = (20, 12, 8)
 """Places tried in a move: anywhere, near by, touching a neighbour."""
 
 PATIENCE, SHORT_PATIENCE = 100, 60
-"""Rounds without progress until an attempt is given up: while looking for something new, and while polishing."""
+"""Rounds without progress until an attempt goes on from its best layout: while looking for something new, and while
+polishing."""
+
+STRIKES = 3
+"""How often in a row it may do so in vain."""
 
 FIRST_STEP, LEAST_STEP = 0.01, 0.001
 """Shares by which the width shrinks while something new is looked for."""
 
 POLISH, POLISH_STEP, POLISH_LEAST = 0.75, 5e-4, 1e-5
 """From this share of the time on, and the shares by which the width shrinks from then on to the end."""
-
-POOL = 5
-"""Layouts that did not quite work out and are kept."""
-
-AGAIN, SWAP = 0.5, 0.7
-"""How often an attempt starts from such a layout instead of the best one; how often items change places."""
 
 
 def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
@@ -40,7 +42,7 @@ def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
         return
     given = within(bench.given, shared.used)
     begin, step, seen = monotonic(), FIRST_STEP, -1
-    pool: list[Layout] = []
+    pool = Pool()
     while (now := monotonic()) < wish.end:
         share = (now - begin) / max(wish.end - begin, 1e-9)
         polishing = share >= POLISH
@@ -52,22 +54,27 @@ def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
         elif not polishing:
             disturb(bench, given, pool)
         seen = found
-        given.bins.size[bin_, 0] = shared.width * (1.0 - step)
-        left = parted(bench, given, SHORT_PATIENCE if polishing else PATIENCE, EFFORT)
+        narrow(bench, given, bin_, shared.width * (1.0 - step))
+        left = parted(bench, given, SHORT_PATIENCE if polishing else PATIENCE, EFFORT, STRIKES)
         if left == 0.0:
             shared.better(bench.best, used_width(bench.best, bin_))
         elif bench.stop[0] == 0:
             step = max(step / 2.0, LEAST_STEP)
-            pool.append(same_again(bench.best))
-            del pool[:-POOL]
+            pool.keep(left, bench.best)
 
 
-def disturb(bench: Bench, given: Arrays, pool: list[Layout]) -> None:
-    """Start from another layout, or with items changed about."""
-    if pool and bench.rng.random() < AGAIN:
-        copy_places(pool[int(bench.rng.integers(len(pool)))], bench.layout)
-    if bench.rng.random() < SWAP:
-        swap_large(bench, given)
+def narrow(bench: Bench, given: Arrays, bin_: int, width: float) -> None:
+    """Make a bin narrower; what lies beyond a random line across it moves back by what sticks out."""
+    given.bins.size[bin_, 0] = width
+    used = used_width(bench.layout, bin_)
+    line = used * bench.rng.random()
+    close_up(given.shapes, bench.layout, bench.pose, given.items.fixed, bin_, line, max(used - width, 0.0))
+
+
+def disturb(bench: Bench, given: Arrays, pool: Pool) -> None:
+    """Start from another layout if there is one, with two items changed about."""
+    pool.take(bench.layout, bench.rng)
+    swap_large(bench, given)
 
 
 def last_bin(shared: Shared, wish: Wish) -> int:

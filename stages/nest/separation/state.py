@@ -108,12 +108,37 @@ class Weights(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Room for one shape in one angle, about its middle: edges, poles, box; filled by `turn_into`.
+    """Room for one shape in one angle, about its middle: edges, poles, box.
 
-    near: room for edges, column by column.
+    near: room for edges, column by column.  turn: cosine and sine of the angle; span: its span if that is one angle,
+    else -1.  filled: 0 as long as there is but the box: edges and poles are turned when they are asked for.
     """
 
     edges: Floats
     poles: Floats
     box: Floats
     near: Floats
+    turn: Floats
+    span: Whole
+    filled: Whole
+
+
+class Tables(NamedTuple):
+    """How badly kinds overlap, by their relative place: what `tables` fills and looks up.
+
+    number: (kinds, kinds, relative angles), that of the table, the kind with the lower number first; -1: none.
+    relation: (spans, spans), the relative angle of one span beside another, -1 if one of them is more than one angle.
+    turn: cosine and sine of the relative angles.  box: (kinds, spans, 4), the box of a kind in a span of one angle.
+    frame: (t, 4), where the grid of a table starts and its cells a mm.  winding, start: (t, cells) of one point of each
+    cell, and where its segments begin; segments: (s, 4).  cost: (t, nodes).
+    """
+
+    number: Whole
+    relation: Whole
+    turn: Floats
+    box: Floats
+    frame: Floats
+    winding: NDArray[np.int8]
+    start: NDArray[np.int32]
+    segments: Floats
+    cost: NDArray[np.float32]

@@ -12,7 +12,9 @@ from stages.nest.separation.fewer import EFFORT, PATIENCE, fewer
 from stages.nest.separation.interlock import assembled, interlocked, interlocking
 from stages.nest.separation.problem import Problem, Spot, arrays, empty_layout, pose_for
 from stages.nest.separation.sharing import OVER, Shared, Wish, bench_for, parted, place, spots_of
-from stages.nest.separation.shorter import shorter
+from stages.nest.separation.shorter import narrow, shorter
+from stages.nest.separation.state import Tables
+from stages.nest.separation.tabling import tables_for
 
 FEWER_SHARE = 0.8
 """Of the time, what the search for fewer bins may take before the last bin is made shorter."""
@@ -35,8 +37,9 @@ def improve(problem: Problem, start: Sequence[Spot], wish: Wish, tell: Callable[
             layout.bin[item] = -1
     used = tuple(sorted({spot.bin for spot in start})) if wish.settled else ()
     shared = Shared(layout, used, wish, lambda found: tell(spots_of(found)))
+    tables = tables_for(problem, given, wish.threads)
     threads = [
-        threading.Thread(target=_work, args=(problem, shared, wish, number), daemon=True)
+        threading.Thread(target=_work, args=(problem, tables, shared, wish, number), daemon=True)
         for number in range(wish.threads)
     ]
     for thread in threads:
@@ -45,9 +48,9 @@ def improve(problem: Problem, start: Sequence[Spot], wish: Wish, tell: Callable[
         thread.join()
 
 
-def _work(problem: Problem, shared: Shared, wish: Wish, number: int) -> None:
+def _work(problem: Problem, tables: Tables, shared: Shared, wish: Wish, number: int) -> None:
     """Search in one thread."""
-    bench = bench_for(problem, wish.seed, number)
+    bench = bench_for(problem, wish.seed, number, tables)
     with shared.lock:
         shared.stops.append(bench.stop)
     begin = monotonic()
@@ -72,4 +75,5 @@ def warm_up(problem: Problem, start: Sequence[Spot]) -> bool:
     bench = bench_for(problem, 0, 0)
     for item, spot in enumerate(start):
         place(bench.given, bench.layout, bench.pose, item, spot)
+    narrow(bench, bench.given, 0, float(problem.bins[0][0]))
     return parted(bench, bench.given, PATIENCE, EFFORT) == 0.0 and assembled(problem, 0, lambda: False) is not None

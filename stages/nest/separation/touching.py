@@ -16,6 +16,9 @@ import numpy as np
 
 from stages.nest.separation.compiled import compiled, vectorised
 
+LEAST_DEPTH = 0.01
+"""Shapes that touch cost what an overlap of this share of their size costs: no overlap is cheap because it is small."""
+
 FIRST_POLES = 1
 """Discs of the first shape that are tried before the edges: the largest one finds most deep overlaps."""
 
@@ -159,3 +162,12 @@ def depth(one, one_start, one_end, other, other_start, other_end, dx, dy, eps):
             apart = eps * eps / (2.0 * eps - min(into, eps))
             total += max(into, apart) * min(radius, other[2, j])
     return total
+
+
+@compiled
+@no_type_check
+def severity(shapes, kind_one, kind_other, one, one_start, one_end, other, other_start, other_end, dx, dy):
+    """Return how bad an overlap of two kinds is whose discs lie so: mm2."""
+    eps = LEAST_DEPTH * max(shapes.size[kind_one], shapes.size[kind_other])
+    deep = depth(one, one_start, one_end, other, other_start, other_end, dx, dy, eps)
+    return np.sqrt(deep + eps * eps) * np.sqrt(shapes.weight[kind_one] * shapes.weight[kind_other])

@@ -24,7 +24,8 @@ from stages.nest.separation.problem import (
     inner,
     pose_for,
 )
-from stages.nest.separation.state import RECTANGLE, Layout, Pose, Weights
+from stages.nest.separation.state import RECTANGLE, Layout, Pose, Tables, Weights
+from stages.nest.separation.tabling import tables_for
 
 UPRIGHT: tuple[Span, ...] = ((0.0, 0.0),)
 BY_QUARTERS: tuple[Span, ...] = tuple((angle, angle) for angle in QUARTERS)
@@ -33,10 +34,11 @@ WIDE = ((100_000.0, 100_000.0),)
 
 
 class Scene(NamedTuple):
-    """A problem as the kernels see it, with a layout and room for a pose."""
+    """A problem as the kernels see it, with its tables, a layout and room for a pose."""
 
     problem: Problem
     given: Arrays
+    tables: Tables
     layout: Layout
     pose: Pose
 
@@ -79,7 +81,7 @@ def scene(
     copies = tuple(Item(number, number) for number in range(len(kinds))) if items is None else tuple(items)
     problem = Problem(tuple(kinds), copies, bins, regions)
     given = arrays(problem)
-    return Scene(problem, given, empty_layout(problem, given), pose_for(given))
+    return Scene(problem, given, tables_for(problem, given), empty_layout(problem, given), pose_for(given))
 
 
 def put(

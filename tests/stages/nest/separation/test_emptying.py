@@ -41,7 +41,17 @@ def left(bench: Bench, shared: Shared) -> float:
     pairs, walls = np.zeros((count, count)), np.zeros(count)
     return float(
         measure(
-            given.shapes, given.rules, given.regions, given.items, shared.layout, given.bins, bench.pose, pairs, walls
+            bench.tables,
+            given.shapes,
+            given.rules,
+            given.regions,
+            given.items,
+            shared.layout,
+            given.bins,
+            bench.pose,
+            pairs,
+            walls,
+            True,
         )
     )
 

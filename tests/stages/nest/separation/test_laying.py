@@ -203,7 +203,7 @@ def costs(
     """The cost of an item at a place; the weight of the pair of items 0 and 2 is `heavy`."""
     given_, which, weights = on.given, int(on.given.items.kind[item]), ones(on)
     weights.pair[0, 2] = heavy
-    rules = (given_.shapes, given_.rules, given_.regions)
+    rules = (on.tables, given_.shapes, given_.rules, given_.regions)
     return float(cost_at(*rules, on.layout, weights, posed(on, which), item, which, bin_, *place, limit))
 
 

@@ -64,7 +64,7 @@ def here(on: Scene, item: int) -> Place:
 def cost_of(on: Scene, item: int) -> float:
     """The cost of an item where it lies."""
     kind_, bin_, _, angle, _, _, x, y = here(on, item)
-    rules = (on.given.shapes, on.given.rules, on.given.regions)
+    rules = (on.tables, on.given.shapes, on.given.rules, on.given.regions)
     pose = posed(on, kind_, float(np.degrees(angle)))
     return float(cost_at(*rules, on.layout, ones(on), pose, item, kind_, bin_, x, y, np.inf))
 
@@ -83,8 +83,8 @@ def run(on: Scene, item: int) -> float:
     given_ = on.given
     return float(
         move(
-            given_.shapes, given_.rules, given_.regions, given_.items, on.layout, given_.bins, ones(on), on.pose, item,
-            EFFORT,
+            on.tables, given_.shapes, given_.rules, given_.regions, given_.items, on.layout, given_.bins, ones(on),
+            on.pose, item, EFFORT,
         )
     )  # fmt: skip
 
@@ -134,7 +134,7 @@ def test_a_walk_never_ends_worse_and_tells_the_cost_of_its_end(one: Polygon, oth
     seed_all(seed)
     before = cost_of(on, 0)
     given_ = on.given
-    rules = (given_.shapes, given_.rules, given_.regions)
+    rules = (on.tables, given_.shapes, given_.rules, given_.regions)
     place, cost = walk(
         *rules, on.layout, given_.bins, ones(on), on.pose, 0, here(on, 0), before, COARSE, COARSE_END
     )  # fmt: skip

@@ -27,6 +27,12 @@ from tests.stages.nest.separation.scenes import (
 SECONDS = 0.6
 
 
+@pytest.fixture(scope="module", autouse=True)
+def compiled_first() -> None:
+    """Kernels are compiled or loaded before the clock runs, as in the process of the search."""
+    worker.ready()
+
+
 def told(request: Request, monkeypatch: pytest.MonkeyPatch) -> list[Sequence[Spot]]:
     """All layouts that the search tells."""
     found: list[Sequence[Spot]] = []
