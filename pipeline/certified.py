@@ -4,20 +4,26 @@ The write stage compares a file with its drawing; here the contours read from it
 nest, by the certifier that judged the layout.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from stages.geometry.arcpath import transform
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric, Outcome
 from stages.model.sheet import Nesting, NestOptions, SheetLayout
 from stages.nest.legal_files import ReadSheet, certify_contours
+from stages.write.bridged import bridged
 from stages.write.chains import Entity
 from stages.write.closing import closed_again
+from stages.write.kerf import beam_patterns
 from stages.write.readback import read
 from stages.write.sheets import seen, windows
 
 DEFAULT = Machine()
+DRAWING = re.compile(r"cut/.*\.dxf")
+"""What is read: pictures of the same name lie beside it."""
 
 
 def written(
@@ -44,28 +50,59 @@ def certified_files(
 ) -> tuple[tuple[Metric, ...], tuple[Finding, ...]]:
     """Return what was measured on the sheets of a nest as their files read, and what is wrong.
 
-    Where each part has a file of its own no file shows a sheet, and nothing is measured.
+    Where each part has a file of its own, what that holds is laid on the sheets as the parts are.  Contours that are
+    offset by half a kerf are certified as they are, with gaps that are as much less.
     """
-    if machine.file_per == "part":
-        return (), ()
-    texts = {file.path: file.text for file in files}
-    paths = [machine.path(layout.sheet.id, layout.index) for layout in nesting.layouts]
-    back = {path: read(texts[path], machine.layers).entities for path in paths}
-    sheets = [
-        read_sheet(layout, entities, options)
-        for layout, entities in zip(nesting.layouts, _of_sheets(back, paths, nesting, patterns, machine), strict=True)
-    ]
+    nesting, options = _offset(machine.helps.offset_mm, nesting, options)
+    patterns, _ = beam_patterns(patterns, machine)
+    texts = {file.path: file.text for file in files if DRAWING.fullmatch(file.path)}
+    back = {path: bridged(_read(path, text, machine), machine.helps.gap_mm) for path, text in texts.items()}
+    found = (
+        _of_parts(back, nesting, machine)
+        if machine.file_per == "part"
+        else _of_sheets(back, nesting, patterns, machine)
+    )
+    sheets = [read_sheet(layout, entities, options) for layout, entities in zip(nesting.layouts, found, strict=True)]
     return certify_contours(sheets, patterns, options)
 
 
+def _read(path: str, text: str, machine: Machine) -> Sequence[Entity]:
+    return read(text, machine.of_file(path).layers).entities
+
+
+def _offset(offset: float, nesting: Nesting, options: NestOptions) -> tuple[Nesting, NestOptions]:
+    """Return what offset contours are held against: gaps less by what they are offset, and no zones.
+
+    Zones limit where parts lie, not where the beam goes: the nest was certified against them.
+    """
+    if offset == 0.0:
+        return nesting, options
+    sheets = [
+        layout.sheet.replace(edge_gap_mm=layout.sheet.edge_gap_mm - offset, zones=()) for layout in nesting.layouts
+    ]
+    layouts = [replace(layout, sheet=sheet) for layout, sheet in zip(nesting.layouts, sheets, strict=True)]
+    kerf = options.kerf_mm - 2.0 * offset
+    return Nesting(tuple(layouts)), replace(options, gap_mm=options.gap_mm - 2.0 * offset, kerf_mm=kerf)
+
+
+def _of_parts(back: Mapping[str, Sequence[Entity]], nesting: Nesting, machine: Machine) -> list[Sequence[Entity]]:
+    """Return what the files of the parts hold, as it lies on each sheet."""
+    return [
+        [
+            replace(entity, path=transform(entity.path, placed.motion))
+            for placed in layout.placements
+            for entity in back[machine.part_path(placed.part)]
+            if entity.path is not None
+        ]
+        for layout in nesting.layouts
+    ]
+
+
 def _of_sheets(
-    back: Mapping[str, Sequence[Entity]],
-    paths: Sequence[str],
-    nesting: Nesting,
-    patterns: Sequence[FlatPattern],
-    machine: Machine,
+    back: Mapping[str, Sequence[Entity]], nesting: Nesting, patterns: Sequence[FlatPattern], machine: Machine
 ) -> list[Sequence[Entity]]:
     """Return what each sheet holds, from the file of its own or that of all."""
+    paths = [machine.path(layout.sheet.id, layout.index) for layout in nesting.layouts]
     if machine.file_per == "sheet":
         return [back[path] for path in paths]
     places = windows(nesting.layouts, {pattern.part: pattern for pattern in patterns})

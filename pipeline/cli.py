@@ -126,11 +126,13 @@ def init(kind: str) -> None:
 
 
 @cli.command()
-def schema() -> None:
+@click.option("--side", is_flag=True, help="Of the side files that lie beside drawings, not of the job file.")
+def schema(side: bool) -> None:
     """Print the JSON Schema of the job file."""
     from pipeline.kinds import json_schema
+    from pipeline.sidefiles import side_schema
 
-    click.echo(json_schema())
+    click.echo(side_schema() if side else json_schema())
 
 
 @cli.command()

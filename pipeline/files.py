@@ -77,7 +77,9 @@ def _named(job: Job) -> Machine:
         "thickness": None if thickness is None else f"{thickness:g}",
     }
     safe = {key: safe_name(value or f"no-{key}")[:LONGEST_VALUE].rstrip(".-") for key, value in values.items()}
-    return replace(job.machine, file_name=filled(job.machine.file_name, safe))
+    material = safe_name(job.material.name)[:LONGEST_VALUE] if job.material.name else ""
+    style = replace(job.machine.style, name=safe["job"], material=material)
+    return replace(job.machine, file_name=filled(job.machine.file_name, safe), style=style)
 
 
 def drawings(result: "JobResult") -> dict[str, bytes]:

@@ -6,7 +6,7 @@ not the one the report lists, by its sha256, is refused.  Names of marks and hol
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,7 +17,8 @@ from pipeline.rates import Rates
 from pipeline.report.nestentries import StockEntry, WishEntry, sheet_of
 from pipeline.store import REPORT, digest, safe_names
 from stages.errors import BadInputError, Problem
-from stages.model.cutfile import FilePer, Flavour, Layer, Lettering, Machine, Version
+from stages.model.cutfile import FilePer, Flavour, Layer, Lettering, Machine, Paper, Picture, Side, Style, Version
+from stages.model.helps import Helps
 from stages.model.sheet import NestOptions, Sheet
 
 if TYPE_CHECKING:
@@ -57,13 +58,18 @@ class DxfEntry(Struct, frozen=True):
     text: Lettering
     one_file_per: FilePer
     name: str
+    also: tuple[Picture, ...] = ()
+    paper: Paper = "fit"
+    side: Side = "either"
+    size: str = Style().size
+    helps: Helps = field(default_factory=Helps)
 
     def machine(self) -> Machine:
         """Return what drawings of that sort are like."""
         layers = {meaning: Layer(layer.name, layer.colour) for meaning, layer in self.layers.items()}
-        return Machine(
-            self.flavour, self.version, layers, text=self.text, file_per=self.one_file_per, file_name=self.name
-        )
+        how = Machine(self.flavour, self.version, layers, side=self.side, style=Style(size=self.size), helps=self.helps)
+        named = replace(how, text=self.text, file_per=self.one_file_per, file_name=self.name)
+        return replace(named, also=self.also, paper=self.paper)
 
 
 class JobEntry(Struct, frozen=True):
@@ -235,7 +241,8 @@ def _changed(report: ReportEntry, drawings: dict[str, bytes | None], folder: Pat
 
 def _patterns(report: ReportEntry, drawings: dict[str, bytes | None], folder: Path) -> "tuple[FlatPattern, ...]":
     """Return the patterns of all parts; `BadInputError` for drawings that do not hold one."""
-    from pipeline.readpatterns import NoPatternError, read_pattern
+    from pipeline.readpatterns import read_pattern
+    from pipeline.readpieces import NoPatternError
 
     paths, patterns, problems = _paths(report), [], []
     machine = report.job.dxf.machine()

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from pipeline.decode import canonical
 from pipeline.dxftables import machine_of
-from pipeline.jobfile import JobFile, MaterialTable, ProcessTable, ReadJob
+from pipeline.helps import helps_of, unused
+from pipeline.jobfile import JobFile, MaterialTable, ReadJob
 from pipeline.materials import Sourced, look_up
 from pipeline.processes import limits
+from pipeline.processtables import ProcessTable
 from pipeline.provenance import Limit, limits_of
 from pipeline.rates import Rates, rates_of
 from pipeline.stock import options_of, stock_of
@@ -69,8 +71,9 @@ def job_of(read: ReadJob) -> Job:
     """Return the job that a job file describes."""
     tables = read.tables
     material, material_notes = _material(tables.material)
-    process, process_notes = _process(tables.process, material.thickness_mm)
+    process, process_notes = _process(tables.process, material)
     stock = stock_of(tables.stock, tables.material.grain)
+    helps = helps_of(tables.process, process.kerf_mm, material)
     return Job(
         name=tables.job.name or read.file.stem,
         parts=tuple(_part(read, number, material, process, stock.sheets) for number in range(len(tables.part))),
@@ -80,7 +83,7 @@ def job_of(read: ReadJob) -> Job:
         repairs=stock.repairs,
         options=options_of(tables.nest, process.kerf_mm),
         tolerances=_tolerances(tables),
-        machine=machine_of(tables.dxf),
+        machine=replace(machine_of(tables.dxf), helps=helps),
         pictures="png" in tables.report.formats,
         customer=tables.job.customer,
         revision=tables.job.revision,
@@ -88,7 +91,7 @@ def job_of(read: ReadJob) -> Job:
         digest=_digest(read),
         limits=limits_of(tables),
         inputs=read.inputs,
-        notes=(*read.notes, *material_notes, *process_notes, *stock.told),
+        notes=(*read.notes, *material_notes, *process_notes, *stock.told, *unused(helps, stock.sheets)),
         rates=rates_of(tables.process, tables.nest),
     )
 
@@ -169,13 +172,24 @@ def _k_factor(table: MaterialTable) -> KFactor:
     return KFactor(float(table.k_factor), given=True)
 
 
-def _process(table: ProcessTable, thickness: float | None) -> tuple[Process, tuple[str, ...]]:
+def _process(table: ProcessTable, material: Material) -> tuple[Process, tuple[str, ...]]:
     """Return the process with the limits that it sets at that thickness, and a note where that is not known."""
-    found = {f"{name}_mm": limit.value for name, limit in limits(table, thickness).items()}
+    thickness = material.thickness_mm
+    known = {name: limit.value for name, limit in limits(table, thickness).items()}
+    found = Process(
+        table.type or "",
+        known.get("kerf"),
+        known.get("min_hole"),
+        known.get("min_web"),
+        refuses_narrow=table.on_narrow == "refuse",
+        slat_pitch_mm=_float(table.slat_pitch),
+        compensated=table.kerf_compensation == "offset",
+        tabs=helps_of(table, None, material).tabs,
+    )
     if table.type is None:
-        return Process("", **found), ()
+        return found, ()
     note = f"no thickness is known: the limits of {table.type} are those of the thinnest sheet"
-    return Process(table.type, **found), (note,) if thickness is None else ()
+    return found, (note,) if thickness is None else ()
 
 
 def _float(value: Fraction | None) -> float | None:

@@ -16,9 +16,11 @@ from msgspec import Meta, field
 
 from pipeline.decode import Complaint, Walk, decode
 from pipeline.dxftables import DxfTable, alone_troubles
+from pipeline.helps import help_troubles
 from pipeline.locate import Place, nearest, places
 from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, text_of
 from pipeline.paths import Path, written
+from pipeline.processtables import ProcessTable
 from pipeline.sources import Sources, Tell, silent
 from pipeline.stocktables import NestTable, StockTable, grain_troubles, other_material
 from pipeline.units import JOB_UNITS
@@ -29,6 +31,7 @@ from stages.model.faces import FaceFile
 from stages.model.meshes import MeshFile, MeshNormals
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
+from stages.model.sewing import mate_troubles
 from stages.model.tolerances import Class, Tolerances
 
 if TYPE_CHECKING:
@@ -102,26 +105,6 @@ LARGEST_K = 0.5
 """A neutral line beyond the middle of the sheet would be stretched by bending on both of its sides."""
 
 
-class ProcessTable(Table, frozen=True, kw_only=True):
-    """How the sheet is cut; min_hole, min_web: narrowest hole, least material between two cuts, if not the table's.
-
-    kerf: width of the cut, for the report: contours are written as they are, without an offset.
-    speed: way of the cutter in a minute; pierce_time: seconds for each cut begun; both for the time in the cost table.
-    """
-
-    type: Literal["laser", "plasma", "waterjet", "oxy-fuel", "knife", "die"] | None = None
-    kerf: Length | None = None
-    min_hole: Length | None = None
-    min_web: Length | None = None
-    speed: Length | None = None
-    pierce_time: Number | None = None
-
-    def troubles(self) -> Iterator[Trouble]:
-        """Yield widths and times below nothing, and a cutter that stands still."""
-        yield from negatives(self, "kerf", "min_hole", "min_web", "pierce_time")
-        yield from not_positive(self, "speed")
-
-
 class ToleranceTable(Table, frozen=True, kw_only=True):
     """What the shop accepts; accept: the worst class that is cut; chord: contour to exact contour; join: of a strip."""
 
@@ -167,12 +150,15 @@ class JobFile(Table, frozen=True, kw_only=True):
         yield from repeated("part", "name", [part.name for part in self.part])
         yield from repeated("stock", "id", [stock.name for stock in self.stock])
         yield from taken_by_blanks(self.part)
+        yield from mate_troubles([(part.name, part.seam) for part in self.part])
         yield from grain_troubles(self.part, self.stock, self.material.grain)
         yield from other_material(self.stock, self.material.name, self.material.thickness)
         if self.nest.common_line and self.process.kerf is None and self.process.type is None:
             hint = "give process.kerf or process.type: neighbours lie one kerf apart"
             yield Trouble("nest.common_line", "the width of the cut is not known", hint)
         yield from alone_troubles(self.dxf, common_line=self.nest.common_line)
+        thickness = None if self.material.thickness is None else float(self.material.thickness)
+        yield from help_troubles(self.process, self.dxf, self.nest, self.stock, thickness)
         for i, part in enumerate(self.part):
             if part.face != "middle" and self.material.thickness is None:
                 hint = "give material.thickness: the neutral surface lies that far in the sheet"

@@ -8,6 +8,7 @@ from pipeline.remnants import REMNANTS, remnant_document
 from pipeline.report.document import Document, class_of, document, encoded
 from pipeline.report.lines import stage_line, trouble_lines
 from pipeline.run import JobResult, PartRun
+from pipeline.sidefiles import side_files
 from pipeline.store import REPORT
 
 if TYPE_CHECKING:
@@ -18,7 +19,8 @@ def outputs(result: JobResult) -> tuple[Document, dict[str, bytes]]:
     """Return the report, and every file by its path below the output folder."""
     files = drawings(result)
     report = document(result, files)
-    return report, {REPORT: encoded(report), **stored(result), **files, **pictures(result)}
+    every = {**stored(result), **files, **side_files(result, files), **pictures(result)}
+    return report, {REPORT: encoded(report), **every}
 
 
 def stored(result: JobResult) -> dict[str, bytes]:

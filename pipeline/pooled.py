@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 NO_SOLUTION = EXIT_CODES["no-solution"]
 NO_NAME = "unnamed"
 
+CHORDED = frozenset({"polylines", "aama"})
+"""Flavours whose drawings hold no arcs, and tell nothing of those that they stand for."""
+
+ARCS_ARE_HAD = 'run such a job with [dxf] flavour = "polyline-arcs" and pool that, to have its arcs'
+
 
 @dataclass(frozen=True, slots=True)
 class Order:
@@ -155,6 +160,9 @@ def _notes(material: Material, jobs: Mapping[str, Finished], supply: Supply) -> 
         yield "no material is stated: the parts are taken to be of one"
     if len(jobs) > 1 and material.thickness_mm is None:
         yield "no thickness is stated: the parts are taken to be of one"
+    chorded = ", ".join(f'"{name}"' for name, job in jobs.items() if job.machine.flavour in CHORDED)
+    if chorded:
+        yield f"parts of {chorded} are nested and written as the chords that their drawings hold: {ARCS_ARE_HAD}"
     yield from supply.notes
 
 

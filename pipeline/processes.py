@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from pipeline.jobfile import ProcessTable
 from pipeline.materials import Sourced
+from pipeline.processtables import ProcessTable
 
 
 @dataclass(frozen=True, slots=True)

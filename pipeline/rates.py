@@ -6,7 +6,7 @@ its own, and where it gives none no time is told.
 
 from dataclasses import dataclass
 
-from pipeline.jobfile import ProcessTable
+from pipeline.processtables import ProcessTable
 from pipeline.stocktables import NestTable
 
 

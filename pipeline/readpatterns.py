@@ -8,19 +8,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pipeline.readpieces import NoPatternError, piece_pattern
 from stages.geometry.arcpath import ArcPath, area, backwards
 from stages.geometry.pathedges import edges_of
 from stages.model.cutfile import PROFILES, Layer
-from stages.model.pattern import Contour, FlatPattern, Mark, MarkLayer, Text
+from stages.model.pattern import MARK_LAYERS, Contour, FlatPattern, Mark, MarkLayer, Text
+from stages.model.patternlayers import is_pattern_profile
 from stages.write.chains import Entity, Writing
 from stages.write.readback import ReadFile, read
 
-MARK_LAYERS: dict[str, MarkLayer] = {layer: layer for layer in ("MARK", "BEND_UP", "BEND_DOWN", "ROLL", "ENGRAVE")}
+DRAWN: dict[str, MarkLayer] = {layer: layer for layer in MARK_LAYERS}
 NO_CORNERS = np.zeros((4, 2))
-
-
-class NoPatternError(ValueError):
-    """A drawing that is not that of one part."""
 
 
 def read_pattern(text: str, chord_mm: float, layers: Mapping[str, Layer] = PROFILES["planish"]) -> FlatPattern:
@@ -28,6 +26,8 @@ def read_pattern(text: str, chord_mm: float, layers: Mapping[str, Layer] = PROFI
 
     chord_mm: what its contours were held to.  layers: how the drawing calls them.
     """
+    if is_pattern_profile(layers):
+        return piece_pattern(text, chord_mm, layers)
     back = read(text, layers)
     if back.complaints:
         raise NoPatternError("; ".join(back.complaints))
@@ -66,7 +66,7 @@ def _belongs(entity: Entity) -> bool:
     """Return whether an entity is a path or a text on a layer of its own sort."""
     if entity.writing is not None:
         return entity.layer == "LABEL"
-    return entity.path is not None and (entity.layer in MARK_LAYERS or entity.layer in ("CUT_OUTER", "CUT_INNER"))
+    return entity.path is not None and (entity.layer in DRAWN or entity.layer in ("CUT_OUTER", "CUT_INNER"))
 
 
 def _contour(entity: Entity, chord_mm: float, *, sense: float) -> Contour:
@@ -85,7 +85,7 @@ def _closed(entity: Entity) -> ArcPath:
 
 def _marks(entities: Sequence[Entity]) -> list[Mark]:
     """Return the marks in the order of the drawing, counted."""
-    drawn = [(MARK_LAYERS[one.layer], one.path) for one in entities if one.layer in MARK_LAYERS]
+    drawn = [(DRAWN[one.layer], one.path) for one in entities if one.layer in DRAWN]
     return [Mark(f"{layer}-{i}", path, layer) for i, (layer, path) in enumerate(drawn, 1) if path is not None]
 
 

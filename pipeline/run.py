@@ -135,7 +135,10 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
     Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
     """
     runner = Runner(listener)
-    return finish(runner, job, tuple(run for part in job.parts for run in run_set(runner, part, job)))
+    from pipeline.sewing import sewn_runs
+
+    runs = [run for part in job.parts for run in run_set(runner, part, job)]
+    return finish(runner, job, sewn_runs(runner, runs, job.tolerances))
 
 
 def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...]) -> JobResult:

@@ -22,8 +22,8 @@ REPORT = "report.json"
 REPORT_SCHEMA = "planish-report/"
 POOL_SCHEMA = "planish-pool/"
 OURS = frozenset({
-    REPORT, "cut", "flat", "preview", "layout.json", "remnant.json", "remnants", "report.html", "traveller.pdf",
-    "results.csv", "junit.xml",
+    REPORT, "cut", "flat", "pieces", "preview", "layout.json", "remnant.json", "remnants", "report.html",
+    "traveller.pdf", "results.csv", "junit.xml",
 })  # fmt: skip
 """What an output folder may hold at its top."""
 HARMLESS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})

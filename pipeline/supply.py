@@ -5,20 +5,23 @@ material or thickness serves the groups of that material or thickness only, any 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 from msgspec import Meta, field
 
 from pipeline.dxftables import DxfTable, alone_troubles, machine_of
-from pipeline.jobfile import ProcessTable, ReportTable, read_as, repeated
+from pipeline.helps import help_troubles, helps_of
+from pipeline.jobfile import ReportTable, read_as, repeated
 from pipeline.processes import limits
+from pipeline.processtables import ProcessTable
 from pipeline.rates import Rates, rates_of
 from pipeline.stock import options_of, stock_of
 from pipeline.stocktables import NestTable, StockTable
 from stages.model.curves import Table, Trouble
 from stages.model.cutfile import Machine
+from stages.model.material import Material
 from stages.model.report import Finding
 from stages.model.sheet import NestOptions, Sheet
 
@@ -41,6 +44,7 @@ class StockFile(Table, frozen=True, kw_only=True):
             hint = "give process.kerf or process.type: neighbours lie one kerf apart"
             yield Trouble("nest.common_line", "the width of the cut is not known", hint)
         yield from alone_troubles(self.dxf, common_line=self.nest.common_line)
+        yield from help_troubles(self.process, self.dxf, self.nest, self.stock, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,12 +96,13 @@ def supply_of(file: Path) -> Supply:
     """Return what a file of stock gives; `BadInputError` with every problem, each with its place."""
     tables, sources, inputs = read_as(StockFile, file)
     stock = stock_of(tables.stock, None)
-    kerf = limits(tables.process, None).get("kerf")
+    known = limits(tables.process, None).get("kerf")
+    kerf = None if known is None else known.value
     return Supply(
         origin=file.name,
         rows=tuple(_rows(tables.stock, stock.sheets)),
-        options=options_of(tables.nest, None if kerf is None else kerf.value),
-        machine=machine_of(tables.dxf),
+        options=options_of(tables.nest, kerf),
+        machine=replace(machine_of(tables.dxf), helps=helps_of(tables.process, kerf, Material())),
         rates=rates_of(tables.process, tables.nest),
         pictures="png" in tables.report.formats,
         inputs=inputs,

@@ -11,6 +11,7 @@ patterns.
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from pipeline import __version__
@@ -33,8 +34,8 @@ if TYPE_CHECKING:
 
 SCHEMA = "planish-report/1"
 Document = dict[str, object]
-CONTENTS = ("class", "surface", "flat")
-"""The entries of a stage's detail that have a place of their own in the report."""
+CONTENTS = ("class", "surface", "flat", "sides")
+"""The entries of a stage's detail that have a place of their own, in the report or beside the drawings."""
 
 
 def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
@@ -137,6 +138,9 @@ def _job(job: Job) -> Document:
             "kerf_mm": job.process.kerf_mm,
             "min_hole_mm": job.process.min_hole_mm,
             "min_web_mm": job.process.min_web_mm,
+            "on_narrow": "refuse" if job.process.refuses_narrow else "warn",
+            "slat_pitch_mm": job.process.slat_pitch_mm,
+            "kerf_compensation": "offset" if job.process.compensated else "none",
         },
         "tolerance": {
             "accept": tol.accept,
@@ -155,9 +159,14 @@ def _drawings(machine: Machine) -> Document:
         "flavour": machine.flavour,
         "version": machine.version,
         "layers": {meaning: {"name": layer.name, "colour": layer.colour} for meaning, layer in machine.layers.items()},
+        "side": machine.side,
         "text": machine.text,
         "one_file_per": machine.file_per,
         "name": machine.file_name,
+        "also": machine.also,
+        "paper": machine.paper,
+        "size": machine.style.size,
+        "helps": asdict(machine.helps),
     }
 
 

@@ -25,6 +25,7 @@ def figures(pattern: "FlatPattern", area_mm2: float) -> Figures:
     from stages.geometry.arcpath import length
 
     paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
+    paths += [mark.path for mark in pattern.marks if mark.layer == "CUT_SLIT"]
     thickness, density = pattern.thickness_mm, pattern.density_kg_m3
     mass = None if thickness is None or density is None else area_mm2 * thickness * density / MM3_PER_M3
     return Figures(mass, fsum(length(path) for path in paths), len(paths))

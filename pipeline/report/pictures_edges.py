@@ -12,6 +12,7 @@ from stages.geometry import arcpath
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Values, cross2, norm
 from stages.geometry.flatmap import DevelopedEdge, DevelopedRuling, FlatPiece
+from stages.geometry.parallel import Parallel
 from stages.geometry.plane import PlaneCurve, Stretch
 from stages.model.pattern import FlatPattern
 
@@ -34,9 +35,16 @@ def sides(pattern: FlatPattern) -> Sides:
 
 def flat_pieces(pattern: FlatPattern) -> list[FlatPiece]:
     """Return the pieces of the flat map in order, from the edge c1 of the outline; none for a plate."""
-    whole = [edge.curve if isinstance(edge, Stretch) else edge for edge in pattern.outer.edges]
+    whole = [_whole(edge) for edge in pattern.outer.edges]
     there = [edge for edge in whole if isinstance(edge, DevelopedEdge) and not edge.reverse]
     return [edge.piece for i, edge in enumerate(there) if i == 0 or edge.piece is not there[i - 1].piece]
+
+
+def _whole(edge: PlaneCurve) -> PlaneCurve:
+    """Return the edge of the flat map that an edge of a contour is a stretch or a parallel of."""
+    while isinstance(edge, Stretch | Parallel):
+        edge = edge.curve
+    return edge
 
 
 def rulings(pattern: FlatPattern, places: Sequence[float] | Array) -> list[Points2]:

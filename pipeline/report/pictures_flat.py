@@ -107,10 +107,10 @@ def draw_pattern(canvas: Canvas, box: Box, pattern: FlatPattern, room: Room, wor
     canvas.areas([compound([ring[::-1]]) for ring in lines[1:]], "white")
     _bands(canvas, pattern, fit)
     canvas.lines(lines, INK, 0.8)
-    _joints(canvas, contours_drawn, fit)
+    _joints(canvas, [contour for contour in contours_drawn if contour.purpose != "stitch"], fit)
     _overall(canvas, pattern, fit)
     write_edge_names(canvas, pattern, fit)
-    _hole_names(canvas, pattern.inner, fit)
+    _hole_names(canvas, [hole for hole in pattern.inner if hole.purpose != "stitch"], fit)
     _flat_axes(canvas, box, fit)
     scale_bar(canvas, box.right - 0.3, box.bottom + 0.28, fit.scale, min(1.4, box.width / 4.0))
     caption(

@@ -6,18 +6,25 @@ from pipeline.report.pictures_canvas import INK, PURPLE, Canvas, Fit
 from stages.geometry import arcpath
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Points2
-from stages.model.pattern import FlatPattern
+from stages.model.pattern import FlatPattern, Mark
 
 POINTS_PER_INCH = 72.0
 LEAST_POINTS = 3.0
 """Smaller type is a grey smear."""
-BEND_DASHES, MARK_DASHES = (8.0, 2.0, 2.0, 2.0), (5.0, 2.0)
+Dashes = tuple[float, ...]
+STYLES: dict[str, tuple[str, str, Dashes]] = {
+    "dashed": ("mark", INK, (5.0, 2.0)),
+    "dash-dotted": ("bend line", PURPLE, (8.0, 2.0, 2.0, 2.0)),
+    "dotted": ("sew line", INK, (1.0, 1.6)),
+    "solid": ("slit", INK, ()),
+}
+"""How lines beside the contours are drawn: what they are, their colour and dashes."""
 
 
 def draw_marks(canvas: Canvas, pattern: FlatPattern, fit: Fit) -> None:
-    """Draw marks dashed, bend lines dash-dotted in a colour of their own, texts as they will be written."""
-    for bends, colour, dashes in ((False, INK, MARK_DASHES), (True, PURPLE, BEND_DASHES)):
-        paths = [mark.path for mark in pattern.marks if mark.layer.startswith("BEND") == bends]
+    """Draw the lines beside the contours, each sort in its own style, and texts as they will be written."""
+    for style, (_, colour, dashes) in STYLES.items():
+        paths = [mark.path for mark in pattern.marks if _style(mark) == style]
         canvas.lines([fit.place(mark_points(path, fit)) for path in paths], colour, 0.8, dashes)
     for text in pattern.texts:
         size = text.height_mm * fit.scale * POINTS_PER_INCH / CAPITAL
@@ -25,6 +32,13 @@ def draw_marks(canvas: Canvas, pattern: FlatPattern, fit: Fit) -> None:
             along = fit.turn(np.array([np.cos(np.radians(text.angle_deg)), np.sin(np.radians(text.angle_deg))]))
             angle = float(np.degrees(np.arctan2(along[1], along[0])))
             canvas.text(fit.place(text.at[None])[0], text.text, size, angle_deg=angle)
+
+
+def _style(mark: Mark) -> str:
+    """Return how a line is drawn."""
+    if mark.layer.startswith("BEND"):
+        return "dash-dotted"
+    return {"SEW": "dotted", "CUT_SLIT": "solid"}.get(mark.layer, "dashed")
 
 
 CAPITAL = 0.73
@@ -38,10 +52,10 @@ def has_bends(pattern: FlatPattern) -> bool:
 
 def marks_legend(pattern: FlatPattern) -> list[str]:
     """Return what the lines mean, with their numbers."""
-    bends = sum(mark.layer.startswith("BEND") for mark in pattern.marks)
-    marks = len(pattern.marks) - bends
-    counts = (("dashed", marks, "mark"), ("dash-dotted", bends, "bend line"))
-    return [f"{how}: {count} {what}{'s' * (count > 1)}" for how, count, what in counts if count]
+    counts = {how: sum(_style(mark) == how for mark in pattern.marks) for how in STYLES}
+    named = [f"{how}: {count} {STYLES[how][0]}{'s' * (count > 1)}" for how, count in counts.items() if count]
+    stitches = sum(hole.purpose == "stitch" for hole in pattern.inner)
+    return [*named, *([f"{stitches} stitch holes"] if stitches else [])]
 
 
 def mark_points(path: ArcPath, fit: Fit) -> Points2:

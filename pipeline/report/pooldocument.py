@@ -15,6 +15,7 @@ from pipeline.report.costs import cost_lines
 from pipeline.report.document import Document, encoded, figures_entry, measured, nest_entry, write_entry
 from pipeline.report.nestentries import wish_entry
 from pipeline.run import JobResult
+from pipeline.sidefiles import side_files
 from pipeline.store import POOL_SCHEMA, REPORT
 
 SCHEMA = f"{POOL_SCHEMA}1"
@@ -26,7 +27,8 @@ def pool_outputs(pool: Pool) -> tuple[Document, dict[str, bytes]]:
     report = pool_document(pool, drawn)
     files = {REPORT: encoded(report)}
     for group, result in pool.results:
-        every = {**stored(result), **drawn[group.name], **pictures(result)}
+        sides = side_files(result, drawn[group.name])
+        every = {**stored(result), **drawn[group.name], **sides, **pictures(result)}
         files |= {f"{group.name}/{path}": content for path, content in every.items()}
     return report, files
 

@@ -60,7 +60,9 @@ def named(spec: PartSpec) -> list[tuple[str, Feature]]:
     first = 1 + (len(spec.surface.holes) if isinstance(spec.surface, Flat) else 0)
     features: list[tuple[str, Feature]] = [(name_of(hole, i), hole) for i, hole in enumerate(spec.hole, first)]
     features += [(name_of(mark, i), mark) for i, mark in enumerate(spec.mark, 1) if not isinstance(mark, RulingMarks)]
-    return features + [(name_of(notch, i), notch) for i, notch in enumerate(spec.notch, 1)]
+    # notches in seams have their places along the flat pattern
+    edged = [(name_of(notch, i), notch) for i, notch in enumerate(spec.notch, 1) if notch.edge is not None]
+    return [*features, *edged]
 
 
 def placed(spec: PartSpec, patches: tuple[RuledPatch, ...], tol: Tolerances) -> Placement:
@@ -220,9 +222,9 @@ def is_closed(strip: Strip, edges: tuple[PlaneCurve, ...]) -> bool:
 
 
 def _on_edge(strip: Strip, notch: NotchSpec) -> Vector2:
-    """Return u, v of a notch on its edge."""
+    """Return u, v of a notch on its edge, one of c0, c1, start and end."""
     along_v = notch.edge in ("c0", "c1")
-    fixed = {"c0": 0.0, "c1": 1.0, "start": strip.knots[0], "end": strip.knots[-1]}[notch.edge]
+    fixed = {"c0": 0.0, "c1": 1.0, "start": strip.knots[0], "end": strip.knots[-1]}[str(notch.edge)]
     place = float(notch.at) if notch.at is not None else _at_length(strip, notch, along_v=along_v)
     found = np.array([fixed, place] if along_v else [place, fixed])
     _refuse_beyond(strip, found[None, :])

@@ -19,7 +19,7 @@ from stages.errors import NoSolutionError
 from stages.geometry.arcbreaks import Stretch
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arcspline import TooSparseError, chain
-from stages.geometry.arrays import EPS, Array, Points2, Values, norm
+from stages.geometry.arrays import EPS, Array, Numbers, Points2, Values, norm
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from stages.geometry.sampling import Resolved, Samples, resolved, samples
 
@@ -84,7 +84,14 @@ def trace(edges: Sequence[PlaneCurve], *, accuracy: float) -> ArcPath:
 
     Raises NoSolutionError if the accuracy cannot be met or the edges leave a gap.
     """
-    known = [edge for edge in (_sampled(edge, accuracy) for edge in edges) if _extent(edge) > ZERO_LENGTH_MM]
+    return traced(edges, accuracy)[0]
+
+
+def traced(edges: Sequence[PlaneCurve], accuracy: float) -> tuple[ArcPath, Numbers]:
+    """Return that path, and of each of its pieces the number of the edge that it stands for."""
+    sampled = [_sampled(edge, accuracy) for edge in edges]
+    numbers = [number for number, edge in enumerate(sampled) if _extent(edge) > ZERO_LENGTH_MM]
+    known = [sampled[number] for number in numbers]
     if not known:
         raise NoSolutionError("a contour of points", reached=0.0, wanted=ZERO_LENGTH_MM, unit="mm")
     _refuse_gaps(known, accuracy)
@@ -92,7 +99,8 @@ def trace(edges: Sequence[PlaneCurve], *, accuracy: float) -> ArcPath:
     smooth.append(smooth[0])
     runs = [_traced(edge, smooth[i], smooth[i + 1], accuracy) for i, edge in enumerate(known)]
     starts = np.concatenate([run.starts for run in runs])
-    return ArcPath(starts, np.concatenate([run.bulges for run in runs]), closed=True)
+    path = ArcPath(starts, np.concatenate([run.bulges for run in runs]), closed=True)
+    return path, np.repeat(numbers, [run.bulges.size for run in runs])
 
 
 def fit(edge: PlaneCurve, *, accuracy: float) -> ArcPath:

@@ -163,7 +163,7 @@ def distances(a: Pieces, b: Pieces) -> Values:
     """Return the distance of each piece of `a` to the piece of `b` at the same place, in mm."""
     least = np.full(a.bulge.shape, np.inf)
     for one, other in ((a, b), (b, a)):
-        for point in (one.start, one.end, *_normal_points(one, other)):
+        for point in (one.start, one.end, *normal_points(one, other)):
             least = np.minimum(least, point_distances(point, other))
     return np.where(crossing(a, b), 0.0, least)
 
@@ -200,7 +200,7 @@ def _on_side(point: Points2, of: Pieces) -> Mask:
     return side
 
 
-def _normal_points(one: Pieces, other: Pieces) -> tuple[Points2, ...]:
+def normal_points(one: Pieces, other: Pieces) -> tuple[Points2, ...]:
     """Return points of `one` where a common normal with `other` may stand (ends of `one` where there is none)."""
     chord = one.end - one.start
     along = np.clip(dot(other.centre - one.start, chord) / dot(chord, chord), 0.0, 1.0)
@@ -209,10 +209,10 @@ def _normal_points(one: Pieces, other: Pieces) -> tuple[Points2, ...]:
     across = np.stack([-other_chord[:, 1], other_chord[:, 0]], axis=1)
     towards = np.where((other.bulge == 0.0)[:, None], across, other.centre - one.centre)
     is_line = (one.bulge == 0.0)[:, None]
-    return tuple(np.where(is_line, foot, _arc_point(one, sign * towards)) for sign in (1.0, -1.0))
+    return tuple(np.where(is_line, foot, arc_point(one, sign * towards)) for sign in (1.0, -1.0))
 
 
-def _arc_point(of: Pieces, direction: Points2) -> Points2:
+def arc_point(of: Pieces, direction: Points2) -> Points2:
     """Return the point of each arc in a direction from its centre; the nearer end of its sweep where that is off it.
 
     In the frame of the chord, by the angle from the middle of the arc, so that flat arcs lose no digits.

@@ -57,6 +57,12 @@ def hausdorff(edges: Sequence[Resolved], path: ArcPath, *, accuracy: float) -> D
     return Deviation(value, value + HEIGHTS * height)
 
 
+def nearest(points: Points2, path: ArcPath, *, accuracy: float) -> Values:
+    """Return the distance of each point to the path in mm; not too small, and exact up to about `accuracy` mm."""
+    gentle = split(path, max_bulge=QUARTER_BULGE)
+    return _to_path(points, gentle, *_path_points(gentle, DENSITY * accuracy), accuracy)
+
+
 def _path_points(path: ArcPath, height: float) -> tuple[Indices, Points2]:
     """Return points along the path and the pieces they lie on, ends of each piece included."""
     sweep = np.abs(sweeps(path))

@@ -33,12 +33,19 @@ FINER = 0.25
 
 def inscribed(edges: Sequence[PlaneCurve], *, accuracy: float) -> ArcPath:
     """Return a closed path of chords within `accuracy` mm of the edges, both ways."""
+    return chorded(edges, accuracy)[0]
+
+
+def chorded(edges: Sequence[PlaneCurve], accuracy: float) -> tuple[ArcPath, Numbers]:
+    """Return that path, and of each of its chords the number of the edge that it stands for."""
     known = [resolved(edge, accuracy=GRID_SHARE * accuracy) for edge in edges]
     while True:
         dense = [dense_points(edge, accuracy=GRID_SHARE * accuracy) for edge in known]
-        corners = np.concatenate([_corners(points, CHORD_SHARE * accuracy)[:-1] for points in dense])
-        if corners.shape[0] >= LEAST_CORNERS:
-            return ArcPath(corners, np.zeros(corners.shape[0]), closed=True)
+        corners = [_corners(points, CHORD_SHARE * accuracy)[:-1] for points in dense]
+        counts = [some.shape[0] for some in corners]
+        if sum(counts) >= LEAST_CORNERS:
+            path = ArcPath(np.concatenate(corners), np.zeros(sum(counts)), closed=True)
+            return path, np.repeat(np.arange(len(edges)), counts)
         accuracy *= FINER
 
 

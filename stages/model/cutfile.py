@@ -2,14 +2,19 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
-Flavour = Literal["polyline-arcs", "lines-arcs", "polylines", "r12"]
+from stages.model.helps import Helps
+
+Flavour = Literal["polyline-arcs", "lines-arcs", "polylines", "r12", "aama"]
 Version = Literal["R12", "R2000", "R2010", "R2018"]
 Profile = Literal["planish", "inventor"]
 Lettering = Literal["TEXT", "strokes"]
 FilePer = Literal["sheet", "part", "material"]
+Side = Literal["either", "outside"]
+Picture = Literal["svg", "pdf"]
+Paper = Literal["fit", "A4", "A3"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +41,18 @@ LAYER_COLOURS: dict[str, int] = {
     "SHEET_KEEPOUT": 9,
     "ROLL": 30,
     "ENGRAVE": 40,
+    "SEW": 200,
+    "CUT_SLIT": 20,
+    "LEAD": 140,
 }
-"""Layer names and AutoCAD colour indices of the default profile for metal; ENGRAVE: text as strokes."""
+"""Layer names and AutoCAD colour indices of the default profile for metal.
+
+ENGRAVE: text as strokes.  SEW: where a part is sewn, inside its seam allowance.  CUT_SLIT: cuts that enclose nothing.
+LEAD: ways of the cutter onto contours and off them.
+"""
+
+OFFSET = "_OFFSET"
+"""What the names of layers end in where contours lie half a kerf beside the nominal ones."""
 
 INVENTOR_NAMES = {
     "CUT_OUTER": "IV_OUTER_PROFILE",
@@ -65,13 +80,33 @@ def filled(template: str, values: Mapping[str, object]) -> str:
     return FIELD.sub(lambda found: str(values.get(found[1], found[0])), template)
 
 
+def offset_layers(layers: Mapping[str, Layer]) -> dict[str, Layer]:
+    """Return layers whose names say that contours are offset."""
+    return {
+        meaning: replace(layer, name=layer.name + OFFSET) if meaning in ("CUT_INNER", "CUT_OUTER") else layer
+        for meaning, layer in layers.items()
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """What a pattern file says of all its pieces: whose style they are, in which size, of which material; ASCII."""
+
+    name: str = "planish"
+    size: str = "ONE"
+    material: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Machine:
     """What the reader of the file expects.
 
     layers: the name and colour of each layer, by what it means; no two have both the same.
     text: as an entity on LABEL, or as strokes of a single-line font on ENGRAVE.
+    side: on which side of the exact outline of a part the written one may lie; outside: what it encloses only grows.
     file_per, file_name: what goes into one file in `cut/`, and what that is called; `filled` fills its fields.
+    also: what each drawing is written as beside DXF; paper: of a PDF, one page as large as the drawing, or several.
+    helps: what helps the process, in the files in `cut/`.
     """
 
     flavour: Flavour = "polyline-arcs"
@@ -82,8 +117,23 @@ class Machine:
     common_kerf_mm: float | None = None
     """Where two parts are this far apart along straight edges, one line is cut for both; None: every outline closes."""
     text: Lettering = "TEXT"
+    side: Side = "either"
     file_per: FilePer = "sheet"
     file_name: str = FILE_NAMES["sheet"]
+    style: Style = Style()
+    also: tuple[Picture, ...] = ()
+    paper: Paper = "fit"
+    helps: Helps = field(default_factory=Helps)
+
+    def of_file(self, path: str) -> "Machine":
+        """Return what the file at a path is like: in `cut/` contours may be offset, and their layers say so.
+
+        Where parts share cuts, offset contours lie on each other, and on the common line.
+        """
+        if not (self.helps.compensated and path.startswith("cut/")):
+            return self
+        kerf = None if self.common_kerf_mm is None else 0.0
+        return replace(self, layers=offset_layers(self.layers), common_kerf_mm=kerf)
 
     def path(self, stock: str, index: int) -> str:
         """Return the path of the file of a sheet, by what drawings call its stock and its number."""

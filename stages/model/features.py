@@ -113,31 +113,61 @@ class TextMark(Table, frozen=True, kw_only=True, tag_field="kind", tag="text"):
 MarkSpec = RulingMarks | PointMark | CurveMark | TextMark
 
 
-class NotchSpec(Table, frozen=True, kw_only=True):
-    """A notch in an edge, at a parameter of it (`at`) or at a length along the given surface's edge (`distance`).
+NotchKind = Literal["v", "slit", "t", "castle", "u"]
+OUTLINED: frozenset[NotchKind] = frozenset({"v", "castle", "u"})
+"""Notches that enclose an area: they can be part of an outline."""
 
-    kind: "v" is cut into the outline, `width` wide and `depth` deep; "slit" is a line on MARK, `depth` into the part:
-    what a knife cuts with its notch tool, and what a laser only etches.
-    edge: c0 and c1 run with v, start and end (first and last ruling) with u; a plate has "outline", by distance only.
+
+class NotchSpec(Table, frozen=True, kw_only=True):
+    """A notch in an edge or seam, at a parameter (`at`), a length along it (`distance`), a share of it (`fraction`).
+
+    kind: "v", "u" (a slot with a round end), "castle" (a square one): `width` wide and `depth` deep; "slit": a line
+        `depth` into the part; "t": a slit with a bar of `width` across its end.
+    cut: v, u and castle are cut into the outline unless this is false, slit and t only marked unless this is true.
+    edge: c0 and c1 run with v, start and end (first and last ruling) with u; a plate has "outline", without at.
+        A length along an edge counts on the given surface.
+    seam: instead of an edge, that seam of the part; mate: the seam that it is sewn to has the notch as well.
     """
 
-    edge: Literal["c0", "c1", "start", "end", "outline"]
-    kind: Literal["v", "slit"] = "v"
+    edge: Literal["c0", "c1", "start", "end", "outline"] | None = None
+    seam: str | None = None
+    kind: NotchKind = "v"
     at: Number | None = None
     distance: Length | None = None
+    fraction: Number | None = None
     width: Length = field(default_factory=lambda: Length(3))
     depth: Length = field(default_factory=lambda: Length(3))
+    cut: bool | None = None
+    mate: bool = True
     name: Name = ""
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether it is cut, or only marked."""
+        return self.kind in OUTLINED if self.cut is None else self.cut
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield a place that is missing, doubled or off the edge, and sizes that are no notch."""
         yield from not_positive(self, "width", "depth")
-        if (self.at is None) == (self.distance is None):
-            yield Trouble("at", "exactly one of at and distance", "say where on the edge the notch is")
-        if self.edge == "outline" and self.at is not None:
-            yield Trouble("at", "an outline has no parameter", "give distance, from the beginning of the outline")
+        if (self.edge is None) == (self.seam is None):
+            yield Trouble("edge", "exactly one of edge and seam", "say what the notch is in")
+        if self.seam is None and self.fraction is not None:
+            yield Trouble("fraction", "of an edge that is not sewn", "give seam instead of edge, or at or distance")
+        keys = ("at", "distance") if self.seam is None else ("distance", "fraction")
+        if sum(getattr(self, key) is not None for key in keys) != 1:
+            yield Trouble(keys[0], f"exactly one of {' and '.join(keys)}", "say where on the edge the notch is")
+        if self.kind == "u" and self.depth < self.width / 2:
+            yield Trouble("depth", f"{float(self.depth):g} mm", "a u is at least half as deep as it is wide")
+        yield from self._place_troubles()
+
+    def _place_troubles(self) -> Iterator[Trouble]:
+        """Yield places off the edge."""
+        if self.at is not None and self.edge in ("outline", None):
+            yield Trouble("at", f"{self.edge or 'a seam'} has no parameter", "give distance, from its beginning")
         if self.distance is not None and self.distance < 0:
             yield Trouble("distance", f"{float(self.distance):g} mm", "may not be negative")
+        if self.fraction is not None and not 0 <= self.fraction <= 1:
+            yield Trouble("fraction", f"{float(self.fraction):g}", "from 0 to 1 of the length of the seam")
         most = 1 if self.edge in ("start", "end") else None
         if self.at is not None and (self.at < 0 or (most is not None and self.at > most)):
             yield Trouble("at", f"{float(self.at):g}", "u from 0 to 1" if most else "v from 0 on")
@@ -169,6 +199,8 @@ def feature_troubles(
                 place = "curve" if isinstance(feature, CurveHole | CurveMark) else "at"
                 yield Trouble(f"{key}[{i}].{place}", "two numbers: a mesh has no u and v", "give points as [x, y, z]")
     for i, notch in enumerate(notches):
+        if notch.edge is None:
+            continue
         if (notch.edge == "outline") != (on != "strip") and on != "face":
             hint = "one of c0, c1, start, end" if on == "strip" else f"a {on} has outline only"
             yield Trouble(f"notch[{i}].edge", f'no edge "{notch.edge}" on this kind', hint)

@@ -24,6 +24,7 @@ from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, Q
 from stages.model.quinticstrip import QuinticStrip
 from stages.model.rails import Rails
 from stages.model.scalars import Angle, Direction, Length, Number, Point, is_zero
+from stages.model.sewing import Edge, SeamSpec, StitchSpec, seam_troubles
 from stages.model.sheet import Quality
 
 
@@ -202,6 +203,7 @@ class PartSpec(Table, frozen=True, kw_only=True):
     quality: the least quality of a zone of the stock that it accepts, higher is better; "best": it lies outside all
         zones; "any": it may lie in all.
     pair: every second copy is the mirror image.
+    seam, stitch: where it is sewn, with allowances outside the pattern, and the holes for the thread.
     cut: "auto" divides a part whose flat pattern overlaps itself along as few rulings as possible.
     """
 
@@ -220,10 +222,14 @@ class PartSpec(Table, frozen=True, kw_only=True):
     mark: tuple[MarkSpec, ...] = ()
     notch: tuple[NotchSpec, ...] = ()
     bend: tuple[BendSpec, ...] = ()
+    seam: tuple[SeamSpec, ...] = ()
+    stitch: tuple[StitchSpec, ...] = ()
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield what holes, marks and notches break on this kind of surface."""
-        yield from feature_troubles(self.hole, self.mark, self.notch, on=_ground(self.surface))
+        ground = _ground(self.surface)
+        yield from feature_troubles(self.hole, self.mark, self.notch, on=ground)
+        yield from seam_troubles(self.seam, self.stitch, self.notch, sides=_sides(ground))
         yield from self._laying_troubles()
         if self.cut == "auto" and isinstance(self.surface, Flat):
             yield Trouble("cut", "a plate has no rulings to be divided along", 'leave it out, or write "none"')
@@ -233,7 +239,11 @@ class PartSpec(Table, frozen=True, kw_only=True):
             yield Trouble("cut", "a mesh is cut along its seam", 'leave it out, or write "none"')
         if len(self.bend) > 1:
             yield Trouble("bend[1]", "a second set of bend lines", "a part is bent in one way: leave one of them out")
-        for key in ("hole", "mark", "notch") if is_set(self.surface) else ():
+        if self.seam and self.cut == "auto":
+            yield Trouble(
+                "cut", "a part with seams is not divided: which blank they belong to is not said", "leave it out"
+            )
+        for key in ("hole", "mark", "notch", "seam") if is_set(self.surface) else ():
             if getattr(self, key):
                 yield Trouble(key, "which of the blanks is meant is not said", "give that blank as a part of its own")
 
@@ -257,12 +267,19 @@ class PartSpec(Table, frozen=True, kw_only=True):
 
     @property
     def has_features(self) -> bool:
-        """Whether anything is cut into it or drawn on it."""
-        return bool(self.hole or self.mark or self.notch)
+        """Whether anything is cut into it, drawn on it or sewn to it."""
+        return bool(self.hole or self.mark or self.notch or self.seam)
 
     def blank(self, number: int) -> "PartSpec":
         """Return the specification of one piece of the divided part, `<part>.<n>`."""
         return replace(self, name=f"{self.name}.{number}", cut="none")
+
+
+def _sides(ground: Ground) -> tuple[Edge, ...]:
+    """Return the edges that a part on that ground may have; a face may be a strip with four, or trimmed."""
+    if ground == "face":
+        return get_args(Edge)
+    return ("c0", "c1", "start", "end") if ground == "strip" else ("outline",)
 
 
 def _ground(surface: SurfaceSpec) -> Ground:

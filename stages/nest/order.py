@@ -30,7 +30,7 @@ LONGEST_TOUR = 1000
 BESIDE_MM = 0.01
 """How far the polygon of a hole may be off it; a part that touches the hole still lies in it."""
 
-FOLLOWED = frozenset({"MARK", "CUT_INNER", "CUT_OUTER"})
+FOLLOWED = frozenset({"MARK", "CUT_SLIT", "CUT_INNER", "CUT_OUTER"})
 """The layers along which the head goes."""
 
 

@@ -32,7 +32,7 @@ from stages.unroll.limits import area_findings, overlap, overlap_findings, strai
 from stages.unroll.meshes import flatten_mesh
 from stages.unroll.onpart import on_part
 from stages.unroll.plates import flatten
-from stages.unroll.rolls import rolled
+from stages.unroll.rolls import scheduled
 from stages.unroll.sensitivity import sensitivity
 from stages.unroll.sides import surface_figures
 from stages.unroll.strain import as_detail, strain_field
@@ -107,7 +107,7 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     bends = [formed(sheet.bent, surface, laid.development, spec) for spec in surface.part.spec.bend]
     bends = bends or [folded(sheet.bent, surface, laid.development)]
     lines = on_part([mark for bend in bends for mark in bend.marks], made.outer, made.inner)
-    rolls = rolled(sheet.bent)
+    rolls = scheduled(sheet.bent, surface, laid.development)
     strain = next(metric for metric in found.metrics if metric.name == "max_strain")
     measured = found.metrics if cut is None else with_trim(found.metrics, cut)
     metrics = (*measured, covered, *laid.metrics, *sheet.metrics, *made.metrics, *rolls.metrics)
@@ -131,7 +131,8 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
         return Outcome(None, report)
     tangencies = on_part(tangency_marks(surface, laid.development), made.outer, made.inner)
     whole = replace(made, marks=(*made.marks, *lines, *tangencies))
-    return Outcome(finished(surface.part, whole, corners, tol), report)
+    sides = outline.sides(len(surface.patches)) if cut is None else ()
+    return Outcome(finished(surface.part, whole, corners, tol).replace(sides=sides), report)
 
 
 def _class(strain: Metric, by_warp: Class) -> str:

@@ -10,6 +10,7 @@ its hinges.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import degrees
 
 import numpy as np
@@ -34,7 +35,7 @@ from stages.unroll.forming import Forming, folded, formed
 from stages.unroll.limits import area_findings, overlap, overlap_findings, strain_findings
 from stages.unroll.marks import ruling_marks
 from stages.unroll.onpart import on_part
-from stages.unroll.rolls import Rolling, rolled
+from stages.unroll.rolls import Rolling, scheduled
 from stages.unroll.thickness import Neutral, neutral
 from stages.unroll.trimmed import length_error, net_areas
 
@@ -79,7 +80,7 @@ def _joined(
     if not gap.passed:
         return Outcome(None, StageReport("unroll", name, (gap,), (*sheet_findings, _unjoined(gap, made)), REJECTED))
     outer, *holes = _contours(contours_of(surface, made), name, tol)
-    covered, rolls = overlap(outer), [rolled(one.sheet.bent) for one in made]
+    covered, rolls = overlap(outer), [scheduled(one.sheet.bent, one.sheet.surface, one.development) for one in made]
     features, bends = on_branches(surface, made, outer, tuple(holes), tol), [_bends(one) for one in made]
     metrics = (*_metrics(made, outer, holes, tol), gap, covered, *_gathered(made, bends, rolls), *features.metrics)
     strain = next(metric for metric in metrics if metric.name == "max_strain")
@@ -99,7 +100,7 @@ def _joined(
         return Outcome(None, report)
     hinges = on_part(hinge_marks(surface, made), features.outer, features.inner)
     marks = (*features.marks, *(mark for row in lines for mark in row), *hinges)
-    whole = Features(features.outer, features.inner, marks, features.texts)
+    whole = replace(features, marks=marks)
     return Outcome(finished(surface.part, whole, box(outer), tol), report)
 
 

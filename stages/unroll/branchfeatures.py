@@ -42,7 +42,7 @@ def on_branches(
                if isinstance(one.spec, NotchSpec)]  # fmt: skip
     found = [_image(surface, made, one, tol) for one in surface.features if not isinstance(one.spec, NotchSpec)]
     fatal = [one for one in (*notches, *found) if isinstance(one, Finding)]
-    cut = notched(outer, [one for one in notches if isinstance(one, Notch)])
+    cut = notched(surface.part, outer, [one for one in notches if isinstance(one, Notch)])
     return assembled(surface, cut, [one for one in found if isinstance(one, Flat)], fatal, holes=holes)
 
 

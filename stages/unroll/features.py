@@ -11,7 +11,7 @@ Marks do not reach beyond the outline nor across holes (`onpart`); a text that d
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -34,7 +34,7 @@ from stages.model.features import (
     RulingMarks,
     TextMark,
 )
-from stages.model.pattern import Contour, Mark, Text
+from stages.model.pattern import Contour, Mark, NotchPlace, Purpose, Text
 from stages.model.report import Finding, Metric
 from stages.model.surface import Placed, Plate, RuledSurface, Surface
 from stages.unroll import outline
@@ -61,6 +61,8 @@ class Features:
     findings: tuple[Finding, ...] = ()
     mark_rows: list[Row] = field(default_factory=list)
     hole_rows: list[Row] = field(default_factory=list)
+    notches: tuple[NotchPlace, ...] = ()
+    boundary: Contour | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +110,7 @@ def on_strip(
                 found.append(made)
     rulings = [spec for spec in surface.part.spec.mark if isinstance(spec, RulingMarks)]
     lines = tuple(mark for spec in rulings for mark in ruling_marks(development, spec, chord_mm=outer.chord_mm))
-    made_outer = notched(outer, notches)
+    made_outer = notched(surface.part, outer, notches)
     return assembled(surface, made_outer, found, findings, lines=lines, holes=holes)
 
 
@@ -131,7 +133,7 @@ def on_plate(plate: Plate, outer: Contour, holes: tuple[Contour, ...]) -> Featur
         if not isinstance(one.spec, NotchSpec)
     ]
     off = [notch for notch in notches if isinstance(notch, Finding)]
-    made_outer = notched(outer, [notch for notch in notches if isinstance(notch, Notch)])
+    made_outer = notched(plate.part, outer, [notch for notch in notches if isinstance(notch, Notch)])
     return assembled(plate, made_outer, found, off, holes=holes)
 
 
@@ -222,19 +224,20 @@ def assembled(
     given = [mark for made in found for mark in _marks(made, outer.chord_mm)]
     marks, rulings = on_part(given, outer, inner), on_part(lines, outer, inner)
     texts = tuple(_text(made) for made in found if isinstance(made.placed.spec, TextMark))
-    rows = [row for made in found if (row := _mark_row(made)) is not None]
-    rows += [_row(name, point, None) for name, point in made_outer.places]
+    rows = [*filter(None, map(_mark_row, found)), *(_row(place.name, place.at, None) for place in made_outer.places)]
     hole_rows = [_hole_row(hole.name, contours.area_and_centroid(hole.edges), None) for hole in holes]
     hole_rows += [_hole_row(made.placed.name, figures, made.placed.distance_mm) for made, figures in cut]
     return Features(
         outer,
         inner,
-        (*rulings, *marks, *made_outer.slits),
+        (*rulings, *marks, *made_outer.lines),
         texts,
         said.metrics,
         (*fatal, *said.findings, *left_off(given, marks), *text_findings(texts, outer, inner)),
         rows,
         hole_rows,
+        made_outer.places,
+        made_outer.boundary,
     )
 
 
@@ -252,7 +255,8 @@ def _hole(made: Flat, area: float, chord_mm: float) -> Contour:
     edges = made.edges
     if area > 0.0:
         edges = tuple(stretch(edge, 1.0, 0.0) for edge in edges[::-1])
-    return outline.contour(edges, chord_mm, made.placed.name)
+    purpose: Purpose = "drill" if isinstance(made.placed.spec, DrilledHole) else "cut"
+    return replace(outline.contour(edges, chord_mm, made.placed.name), purpose=purpose)
 
 
 def _marks(made: Flat, chord_mm: float) -> list[Mark]:

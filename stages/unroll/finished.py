@@ -32,6 +32,8 @@ def finished(part: Part, made: Features, corners: Points2, tol: Tolerances) -> F
         axis_deg=part.spec.axis_deg,
         axis_band_deg=float(part.spec.grain_band),
         pair=part.spec.pair,
+        notches=made.notches,
+        boundary=made.boundary,
     )
 
 

@@ -110,7 +110,7 @@ def _features(surface: MeshSurface, flat: MeshMap, outer: Contour, holes: tuple[
     notches = [on_outline(one, one.spec, outer.edges) for one in surface.features if isinstance(one.spec, NotchSpec)]
     found = [_image(surface, flat, one) for one in surface.features if not isinstance(one.spec, NotchSpec)]
     off = [notch for notch in notches if isinstance(notch, Finding)]
-    made_outer = notched(outer, [notch for notch in notches if isinstance(notch, Notch)])
+    made_outer = notched(surface.part, outer, [notch for notch in notches if isinstance(notch, Notch)])
     return assembled(surface, made_outer, found, off, holes=holes)
 
 

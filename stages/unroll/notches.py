@@ -1,8 +1,10 @@
-"""Notches in the outline: V notches cut into the exact contour, slits as lines to be marked.
+"""Notches in the outline: V, castle and U cut into the exact contour; slits and T as lines to be marked or cut.
 
-A V notch takes `width` of the outline, measured along it, half on each side of its place, and puts two straight lines
-to a tip in its stead, `depth` into the part, across the edge at the place.  The outline runs counter-clockwise, so the
-part lies on its left.
+A notch that encloses an area takes `width` of the outline, measured along it, half on each side of its place, and puts
+its own sides there in its stead (`notchshapes`), `depth` into the part, across the edge at the place.  The outline
+runs counter-clockwise, so the part lies on its left.
+
+A part with seams is cut along its allowances: its notches are placed here and cut there (`sewing`).
 """
 
 from collections.abc import Sequence
@@ -12,19 +14,18 @@ from itertools import pairwise
 import numpy as np
 
 from stages.geometry.arclength import length_between, reached, speed_of
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Vector2, norm
 from stages.geometry.cover import doubled
-from stages.geometry.plane import PlaneCurve, Segment, stretch
+from stages.geometry.plane import PlaneCurve, stretch
 from stages.geometry.strip import locate
-from stages.model.features import NotchSpec
-from stages.model.pattern import Contour, Mark
+from stages.model.features import OUTLINED, NotchSpec
+from stages.model.material import Part
+from stages.model.pattern import Contour, Mark, MarkLayer, NotchPlace, Spot
 from stages.model.report import Finding
 from stages.model.surface import Placed
 from stages.unroll import outline
-
-Spot = tuple[int, float]
-"""A place on an outline: the number of the edge, and t on it."""
+from stages.unroll.marks import traced
+from stages.unroll.notchshapes import Opening, lines, sides
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +40,13 @@ class Notch:
 
 @dataclass(frozen=True, slots=True)
 class Notched:
-    """The outline with its notches, the slits, and what forbids them; `places`: name and point of each, mm."""
+    """The outline with its notches and as it was without, the lines of those beside it, and what forbids any."""
 
     outer: Contour
-    slits: tuple[Mark, ...] = ()
+    lines: tuple[Mark, ...] = ()
     findings: tuple[Finding, ...] = ()
-    places: tuple[tuple[str, Vector2], ...] = ()
+    places: tuple[NotchPlace, ...] = ()
+    boundary: Contour | None = None
 
 
 def on_strip(placed: Placed, spec: NotchSpec, knots: np.ndarray) -> Notch:
@@ -61,7 +63,7 @@ def on_strip(placed: Placed, spec: NotchSpec, knots: np.ndarray) -> Notch:
         "end": ((1 + pieces, 1.0 - u), (1 + pieces, 2 + pieces)),
         "c0": ((1 + 2 * pieces - piece, 1.0 - t), (2 + pieces, 2 + 2 * pieces)),
     }
-    return Notch(placed.name, spec, *spots[spec.edge])
+    return Notch(placed.name, spec, *spots[str(spec.edge)])
 
 
 def on_outline(placed: Placed, spec: NotchSpec, edges: Sequence[PlaneCurve]) -> Notch | Finding:
@@ -72,42 +74,81 @@ def on_outline(placed: Placed, spec: NotchSpec, edges: Sequence[PlaneCurve]) -> 
     return Notch(placed.name, spec, spot, (0, len(edges)))
 
 
-def notched(outer: Contour, notches: Sequence[Notch]) -> Notched:
-    """Return the outline with V notches in it and slits beside it; Raises NoSolutionError as `outline.contour` does."""
+def notched(part: Part, outer: Contour, notches: Sequence[Notch]) -> Notched:
+    """Return the outline with notches; that of a part with seams as it is, its notches only placed.
+
+    Raises NoSolutionError as `outline.contour` does.
+    """
+    if part.spec.seam:
+        return Notched(outer, places=tuple(_place(outer, notch) for notch in notches))
+    return cut_into(outer, notches)
+
+
+def cut_into(outer: Contour, notches: Sequence[Notch]) -> Notched:
+    """Return an outline with its notches cut into it, or drawn beside it; Raises NoSolutionError as `notched` does."""
     if not notches:
         return Notched(outer)
-    places = tuple((notch.name, _frame(outer, notch.spot)[0]) for notch in notches)
-    slits = tuple(_slit(outer, notch) for notch in notches if notch.spec.kind == "slit")
-    cuts = [_cut(outer, notch) for notch in notches if notch.spec.kind == "v"]
-    findings = tuple(cut for cut in cuts if isinstance(cut, Finding))
-    found = sorted((cut for cut in cuts if isinstance(cut, Cut)), key=lambda cut: cut.low)
+    places = tuple(_place(outer, notch) for notch in notches)
+    opened = [(notch, _opened(outer, notch)) for notch in notches]
+    findings = tuple(opening for _, opening in opened if isinstance(opening, Finding))
+    known = [(notch, opening) for notch, opening in opened if isinstance(opening, Opened)]
+    lines = tuple(line for notch, opening in known for line in _lines(notch, opening, outer.chord_mm))
+    cuts = [
+        Cut(notch.name, one.low, one.high, sides(notch.spec, one.opening)) for notch, one in known if _is_edge(notch)
+    ]
+    found = sorted(cuts, key=lambda cut: cut.low)
     findings += tuple(
         Finding("notches-overlap", f"{b.name} begins before {a.name} has ended", fatal=True, where={"feature": b.name})
         for a, b in pairwise(found)
         if b.low < a.high
     )
     if findings or not found:
-        return Notched(outer, slits, findings, places)
+        return Notched(outer, lines, findings, places)
     made = outline.contour(_edges(outer.edges, found), outer.chord_mm, outer.name)
     covered = doubled(made.path)
     if covered > made.chord_mm**2:
         message = f"with its notches the outline crosses itself: {covered:.4g} mm2 are covered twice or inside out"
         findings = (Finding("contour-crosses-itself", message, fatal=True),)
-    return Notched(made, slits, findings, places)
+    return Notched(made, lines, findings, places, outer)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+def _is_edge(notch: Notch) -> bool:
+    """Return whether the shape of a notch is part of the outline."""
+    return notch.spec.kind in OUTLINED and notch.spec.is_cut
+
+
+def _place(outer: Contour, notch: Notch) -> NotchPlace:
+    point, inward = frame(outer.edges, notch.spot)
+    spec = notch.spec
+    return NotchPlace(
+        notch.name, spec.kind, point, inward, float(spec.depth), float(spec.width), _is_edge(notch), notch.spot
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class Cut:
-    """A stretch of the outline, from `low` to `high`, that two lines to `tip` take the place of."""
+    """A stretch of the outline, from `low` to `high`, that the sides of a notch take the place of."""
 
     name: str
     low: Spot
     high: Spot
-    tip: Vector2
+    sides: tuple[PlaneCurve, ...]
 
 
-def _cut(outer: Contour, notch: Notch) -> Cut | Finding:
-    """Return what a V notch takes away, or why it cannot."""
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """The stretch of the outline that a notch takes, and its opening."""
+
+    low: Spot
+    high: Spot
+    opening: Opening
+
+
+def _opened(outer: Contour, notch: Notch) -> Opened | Finding:
+    """Return what a notch takes of the outline, nothing for a slit or a T, or why it cannot."""
+    point, inward = frame(outer.edges, notch.spot)
+    if notch.spec.kind not in OUTLINED:
+        return Opened(notch.spot, notch.spot, Opening(point, inward, point, point))
     first, last = notch.side
     speeds = [speed_of(edge) for edge in outer.edges[first:last]]
     index, t = notch.spot
@@ -117,18 +158,28 @@ def _cut(outer: Contour, notch: Notch) -> Cut | Finding:
     low, high = reached(speeds, place - half), reached(speeds, place + half)
     if low is None or high is None:
         return _off(notch.name, f"{2.0 * half:g} mm wide at {place:.6g} mm, it passes the end of its edge")
-    point, inward = _frame(outer, notch.spot)
-    tip = point + float(notch.spec.depth) * inward
-    return Cut(notch.name, (low[0] + first, low[1]), (high[0] + first, high[1]), tip)
+    ends = ((low[0] + first, low[1]), (high[0] + first, high[1]))
+    start, end = (outer.edges[edge].at(np.array([at]))[0] for edge, at in ends)
+    return Opened(*ends, Opening(point, inward, start, end))
+
+
+def _lines(notch: Notch, opened: Opened, chord_mm: float) -> list[Mark]:
+    """Return the lines of a notch that is no part of the outline."""
+    layer: MarkLayer = "CUT_SLIT" if notch.spec.is_cut else "MARK"
+    if notch.spec.kind not in OUTLINED:
+        return [Mark(notch.name, path, layer) for path in lines(notch.spec, opened.opening)]
+    if notch.spec.is_cut:
+        return []
+    return [Mark(notch.name, traced(sides(notch.spec, opened.opening), chord_mm), layer)]
 
 
 def _off(name: str, message: str) -> Finding:
     return Finding("notch-off-edge", f"{name}: {message}", fatal=True, where={"feature": name})
 
 
-def _frame(outer: Contour, spot: Spot) -> tuple[Vector2, Vector2]:
+def frame(edges: Sequence[PlaneCurve], spot: Spot) -> tuple[Vector2, Vector2]:
     """Return the point of the outline and the unit vector into the part, just inside an end that has no direction."""
-    edge, t = outer.edges[spot[0]], spot[1]
+    edge, t = edges[spot[0]], spot[1]
     along = edge.derivative(np.clip(np.array([t, t - BESIDE, t + BESIDE]), 0.0, 1.0))
     tangent = along[int(np.argmax(norm(along) > 0.0))]
     inward = np.array([-tangent[1], tangent[0]]) / max(float(norm(tangent)), np.finfo(float).tiny)
@@ -138,20 +189,13 @@ def _frame(outer: Contour, spot: Spot) -> tuple[Vector2, Vector2]:
 BESIDE = 1e-6
 
 
-def _slit(outer: Contour, notch: Notch) -> Mark:
-    point, inward = _frame(outer, notch.spot)
-    ends = np.stack([point, point + float(notch.spec.depth) * inward])
-    return Mark(notch.name, ArcPath(ends, np.zeros(2), closed=False))
-
-
 def _edges(edges: Sequence[PlaneCurve], cuts: Sequence[Cut]) -> tuple[PlaneCurve, ...]:
     """Return the outline with its cuts, which are in order and apart."""
     made: list[PlaneCurve] = []
     here: Spot = (0, 0.0)
     for cut in cuts:
         made += _between(edges, here, cut.low)
-        (start,), (end,) = (edges[index].at(np.array([t])) for index, t in (cut.low, cut.high))
-        made += [Segment(start, cut.tip), Segment(cut.tip, end)]
+        made += cut.sides
         here = cut.high
     return (*made, *_between(edges, here, (len(edges) - 1, 1.0)))
 

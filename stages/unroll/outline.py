@@ -8,7 +8,7 @@ from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Vector2, norm
 from stages.geometry.flatmap import DevelopedEdge, DevelopedRuling, Development
 from stages.geometry.plane import PlaneCurve, Segment
-from stages.model.pattern import Contour
+from stages.model.pattern import Contour, EdgeRun
 
 
 def corners(development: Development) -> Points2:
@@ -26,6 +26,17 @@ def edges(development: Development) -> tuple[PlaneCurve, ...]:
     back = [DevelopedEdge(piece, 0.0, reverse=True) for piece in development.pieces[::-1]]
     start, end = DevelopedRuling(first, 0.0), DevelopedRuling(last, 1.0, reverse=True)
     return (_ruling(start), *there, _ruling(end), *back)
+
+
+def sides(pieces: int) -> tuple[EdgeRun, ...]:
+    """Return the four sides of a strip in that outline; c0 and c1 run with v, start and end with u."""
+    last = 1 + pieces
+    return (
+        EdgeRun("start", 0, 1),
+        EdgeRun("c1", 1, last),
+        EdgeRun("end", last, last + 1, backwards=True),
+        EdgeRun("c0", last + 1, last + 1 + pieces, backwards=True),
+    )
 
 
 def _ruling(edge: DevelopedRuling) -> PlaneCurve:

@@ -16,17 +16,20 @@ strengths of delivered sheet lie well above their least values.
 .. [1] F. J. Gardiner, "The springback of metals", Transactions of the ASME 79 (1957), 1-9.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, radians
 
 import numpy as np
 
 from stages.geometry.arrays import Values, norm
+from stages.geometry.flatmap import Development
 from stages.geometry.tightest import Tight, tightest
 from stages.geometry.turning import FLAT, Run, is_fold, places, run_angle, runs
 from stages.model.material import Material
 from stages.model.report import Finding, Metric, Where
+from stages.model.surface import RuledSurface
 from stages.unroll.bent import Bent, across, radii_at
+from stages.unroll.forming import flat_rulings
 
 STEP = radians(30.0)
 """Turning between two stations: 12 for a full turn, between which the radius of what is rolled changes little."""
@@ -51,6 +54,19 @@ def rolled(bent: Bent) -> Rolling:
         return Rolling()
     stations = [station for run in runs(bent.bends) for station in _stations(bent, run, tight)]
     return Rolling(tuple(_rows(bent, stations)), *_springback(bent, tight))
+
+
+def scheduled(bent: Bent, neutral: RuledSurface, development: Development) -> Rolling:
+    """Return the roll schedule with the ends of each ruling in the flat frame, from c0 to c1."""
+    made = rolled(bent)
+    if not made.rows:
+        return made
+    at = [v for row in made.rows if isinstance(v := row["v"], float)]
+    lines = flat_rulings(neutral, development, at)
+    rows = (
+        row | {"from": ends[0].tolist(), "to": ends[1].tolist()} for row, ends in zip(made.rows, lines, strict=True)
+    )
+    return replace(made, rows=tuple(rows))
 
 
 def _stations(bent: Bent, run: Run, tight: list[tuple[float, Tight]]) -> list[tuple[float, str]]:

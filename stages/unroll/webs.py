@@ -1,7 +1,9 @@
-"""Whether the holes of a pattern can be cut: each inside the outline, clear of the others, wide enough, not too close.
+"""Whether a pattern can be cut: its holes inside the outline, clear of each other, wide enough, and no web too narrow.
 
-Distances are exact, between the lines and arcs that will be cut (`stages.geometry.clearance`).  The width of a hole is
-the diameter of the largest circle in it: exact for a circle, within a hundredth of the chord for any other.
+Distances are exact, between the lines and arcs that will be cut (`stages.geometry.clearance`); webs are those between
+two contours and of a contour with itself, told with the places on both sides (`stages.geometry.bridges`).  The width of
+a hole is the diameter of the largest circle in it: exact for a circle, within a hundredth of the chord for any other.
+Where contours are to be offset for the kerf, one that is narrower than it somewhere refuses the part.
 """
 
 from collections.abc import Iterator, Sequence
@@ -9,15 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry import arcpath, clearance
+from stages.geometry import arcpath, bridges, clearance
 from stages.geometry.arrays import Array, Mask
+from stages.geometry.beside import ROUND
+from stages.geometry.bridges import Bridge
 from stages.geometry.clearance import Pieces
+from stages.geometry.compensation import TooNarrow, compensated
 from stages.geometry.contours import area_and_centroid
 from stages.geometry.cover import doubled
 from stages.geometry.plane import CircularArc
 from stages.model.pattern import Contour
 from stages.model.process import Process
 from stages.model.report import Evidence, Finding, Metric, Where
+from stages.unroll.tipping import tipping
 
 FIRST_LOOK_MM = 1.0
 """The narrowest web is sought within this distance first, then within twice that, and so on."""
@@ -41,15 +47,27 @@ class Judgement:
 
 def judged(outer: Contour, holes: Sequence[Contour], process: Process) -> Judgement:
     """Return the narrowest hole and web, and what forbids or endangers cutting them."""
-    if not holes:
-        return Judgement()
     paths = [clearance.pieces(contour.path) for contour in (outer, *holes)]
     misplaced = tuple(_not_simple(holes)) or tuple(_crossings(paths, holes)) or tuple(_not_inside(paths, holes))
     if misplaced:
         return Judgement((), misplaced)
-    width, web = _narrowest(holes), _narrowest_web(paths, outer, holes)
-    close = _close(paths, holes, process.min_web_mm or 0.0)
-    return Judgement((width, web), (*_small(holes, process.min_hole_mm or 0.0), *close))
+    close = [] if process.min_web_mm is None else _close(outer, holes, process.min_web_mm)
+    found = (
+        *_small(holes, process),
+        *(_narrow(bridge, holes, process) for bridge in close),
+        *_too_narrow(outer, holes, process),
+        *tipping(outer, process),
+    )
+    return Judgement(_metrics(paths, outer, holes, close), found)
+
+
+def _metrics(paths: Paths, outer: Contour, holes: Sequence[Contour], close: Sequence[Bridge]) -> tuple[Metric, ...]:
+    """Return the narrowest hole, if there is one, and web: of an outline with itself if that was found too narrow."""
+    webs = [_narrowest_web(paths, outer, holes)] if holes else []
+    least = min(close, key=lambda bridge: bridge.width_mm, default=None)
+    if least is not None and not (webs and isinstance(webs[0].value, float) and webs[0].value <= least.width_mm):
+        webs = [Metric("min_web_mm", least.width_mm, "mm", "proved", where=_places(least, holes))]
+    return (*((_narrowest(holes),) if holes else ()), *webs)
 
 
 def _not_simple(holes: Sequence[Contour]) -> Iterator[Finding]:
@@ -118,13 +136,40 @@ def _narrowest_web(paths: Paths, outer: Contour, holes: Sequence[Contour]) -> Me
     return Metric("min_web_mm", distance, "mm", "proved", where=_where(holes[other - 1]) | {"to": _name(holes, one)})
 
 
-def _close(paths: Paths, holes: Sequence[Contour], least: float) -> Iterator[Finding]:
-    """Yield the webs that are narrower than the process can leave."""
-    for (one, other), distance in _within(paths, least).items():
-        if distance < least * (1.0 - ROUNDING):
-            hole = holes[other - 1]
-            message = f"{distance:.4g} mm between {hole.name} and {_name(holes, one)}, the process wants {least:.4g} mm"
-            yield Finding("narrow-web", message, where=_where(hole) | {"to": _name(holes, one)})
+def _close(outer: Contour, holes: Sequence[Contour], least: float) -> list[Bridge]:
+    """Return the webs that are narrower than the process can leave."""
+    found = bridges.webs([contour.path for contour in (outer, *holes)], within=least)
+    return [bridge for bridge in found if bridge.width_mm < least * (1.0 - ROUNDING)]
+
+
+def _narrow(bridge: Bridge, holes: Sequence[Contour], process: Process) -> Finding:
+    """Return the finding on a web that is too narrow."""
+    one, other = (_name(holes, number) for number in (bridge.second, bridge.first))
+    between = f"between {one} and {'itself' if one == other else other}"
+    message = f"{bridge.width_mm:.4g} mm {between}, the process wants {process.min_web_mm:.4g} mm"
+    return Finding("narrow-web", message, process.refuses_narrow, _places(bridge, holes))
+
+
+def _places(bridge: Bridge, holes: Sequence[Contour]) -> Where:
+    """Return the places on both sides of a web: first on the hole, or the outline, then on what it is next to."""
+    (x, y), (to_x, to_y) = bridge.to, bridge.at
+    names: Where = {"hole": _name(holes, bridge.second), "to": _name(holes, bridge.first)}
+    return names | {"x": x, "y": y, "to_x": to_x, "to_y": to_y}
+
+
+def _too_narrow(outer: Contour, holes: Sequence[Contour], process: Process) -> Iterator[Finding]:
+    """Yield the contours that the beam does not fit into, where its way is to be written."""
+    if not (process.compensated and process.kerf_mm):
+        return
+    for number, contour in enumerate((outer, *holes)):
+        way = compensated(contour.path, process.kerf_mm / 2.0, ROUND)
+        if isinstance(way, TooNarrow):
+            x, y = way.at.tolist()
+            message = (
+                f"{_name(holes, number)} is narrower than the kerf of {process.kerf_mm:.4g} mm at ({x:.6g}, {y:.6g})"
+            )
+            remedy = "widen it, take a finer cut, or leave process.kerf_compensation out"
+            yield Finding("narrower-than-kerf", f"{message}: {remedy}", fatal=True, where={"x": x, "y": y})
 
 
 def _name(holes: Sequence[Contour], number: int) -> str:
@@ -138,13 +183,14 @@ def _narrowest(holes: Sequence[Contour]) -> Metric:
     return Metric("min_hole_mm", width, "mm", evidence, where=_where(hole))
 
 
-def _small(holes: Sequence[Contour], least: float) -> Iterator[Finding]:
+def _small(holes: Sequence[Contour], process: Process) -> Iterator[Finding]:
     """Yield the holes that are narrower than the process can cut."""
+    least = process.min_hole_mm or 0.0
     for hole in holes:
         width, _ = _width(hole)
         if width < least * (1.0 - ROUNDING):
             message = f"{hole.name} is {width:.4g} mm wide, the process wants {least:.4g} mm"
-            yield Finding("small-hole", message, where=_where(hole))
+            yield Finding("small-hole", message, process.refuses_narrow, _where(hole))
 
 
 def _width(hole: Contour) -> tuple[float, Evidence]:

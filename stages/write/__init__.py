@@ -7,21 +7,32 @@ the text again, `faults` and `compare` judge it.
 from collections.abc import Sequence
 from dataclasses import replace
 
+from stages.geometry.compensation import Fit
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Outcome, StageReport
 from stages.model.sheet import Nesting, SheetLayout
+from stages.write.bridged import bridged
+from stages.write.clipped import clipped_texts
 from stages.write.closing import closed_again
 from stages.write.compare import Comparison, common_lines, compared, cut_figures, metrics
+from stages.write.contourfigures import measured_file
 from stages.write.drawing import Drawing, flat_drawing
 from stages.write.dxf import dxf_text
 from stages.write.faults import faults
 from stages.write.flavours import as_cut
+from stages.write.helpfigures import help_figures
+from stages.write.helps import helped
+from stages.write.kerf import beam_patterns, offset_metrics
+from stages.write.patternfiles import pattern_files
+from stages.write.pictured import pictured
 from stages.write.readback import read
 from stages.write.remnants import remnant_drawings
 from stages.write.sheets import cut_drawings, seen, windows
 
 DEFAULT = Machine()
+REMNANTS = Machine(flavour="r12", version="R12")
+"""How the drawings of remnants are written beside pattern files, which are R12 too."""
 
 
 def write(patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Machine) -> Outcome[tuple[CutFile, ...]]:
@@ -32,16 +43,38 @@ def write(patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Mac
     Every file has been read back: its faults are findings, and a fatal one means that nothing may be cut from it.
     """
     patterns = [as_cut(pattern, machine) for pattern in patterns]
+    if machine.flavour == "aama":
+        return _written_patterns(patterns, nesting.layouts if nesting else (), machine)
     by_part = {pattern.part: pattern for pattern in patterns}
     drawings = [flat_drawing(pattern, machine) for pattern in patterns]
     layouts = nesting.layouts if nesting else ()
-    drawings += cut_drawings(layouts, by_part, machine)
+    beams, narrow = beam_patterns(patterns, machine)
+    cutting = machine.of_file("cut/")
+    of_beams = {pattern.part: pattern for pattern in beams}
+    drawings += [helped(drawing, cutting) for drawing in cut_drawings(layouts, of_beams, cutting)]
+    shown = pictured(drawings, machine)
     drawings += remnant_drawings(layouts)
-    files = tuple(CutFile(drawing.path, dxf_text(drawing, machine)) for drawing in drawings)
+    files = tuple(CutFile(drawing.path, dxf_text(drawing, machine.of_file(drawing.path))) for drawing in drawings)
     report = judged(files, drawings, by_part, machine)
+    told = (*clipped_texts(patterns, layouts, machine), *report.findings, *narrow, *shown.findings)
+    report = replace(report, findings=told)
     if machine.file_per == "material" and layouts:
         report.detail["sheets"] = _sheet_figures(files, layouts, by_part, machine)
-    return Outcome(files, report)
+    return Outcome((*files, *shown.files), report)
+
+
+def _written_patterns(
+    patterns: Sequence[FlatPattern], layouts: Sequence[SheetLayout], machine: Machine
+) -> Outcome[tuple[CutFile, ...]]:
+    """Return pattern files instead of drawings; what a sheet leaves is no piece and is drawn as ever."""
+    files, report = pattern_files(patterns, layouts, machine)
+    drawings = remnant_drawings(layouts)
+    rests = tuple(CutFile(drawing.path, dxf_text(drawing, REMNANTS)) for drawing in drawings)
+    report = replace(report, findings=(*report.findings, *judged(rests, drawings, {}, REMNANTS).findings))
+    if machine.file_per == "material" and layouts:
+        by_part = {pattern.part: pattern for pattern in patterns}
+        report.detail["sheets"] = _sheet_figures(files, layouts, by_part, machine)
+    return Outcome((*files, *rests), report)
 
 
 def _sheet_figures(
@@ -49,7 +82,7 @@ def _sheet_figures(
 ) -> list[dict[str, float]]:
     """Return the figures of each sheet of a file that holds all of them."""
     path = machine.path("", 0)
-    back = read(next(file.text for file in files if file.path == path), machine.layers)
+    back = read(next(file.text for file in files if file.path == path), machine.of_file(path).layers)
     return [
         cut_figures(replace(back, entities=tuple(seen(back.entities, place)))) for place in windows(layouts, patterns)
     ]
@@ -65,18 +98,28 @@ def judged(
     findings: list[Finding] = []
     comparisons: list[Comparison] = []
     figures: dict[str, object] = {}
+    sides: dict[str, object] = {}
+    beside: list[Fit] = []
     entities = 0
     for file, drawing in zip(files, drawings, strict=True):
-        back = read(file.text, machine.layers)
-        closed = None if drawing.kerf_mm is None else closed_again(back.entities, drawing.kerf_mm)
+        back = read(file.text, machine.of_file(file.path).layers)
+        whole = replace(back, entities=bridged(back.entities, drawing.helps.gap_mm))
+        closed = None if drawing.kerf_mm is None else closed_again(whole.entities, drawing.kerf_mm)
         comparison = compared(back, drawing, patterns if drawing.path.startswith("flat/") else {}, closed)
-        findings += faults(back, file.path, comparison.shortest_mm, _chord(drawing, patterns), closed)
+        findings += faults(whole, file.path, comparison.shortest_mm, _chord(drawing, patterns), closed)
+        found = help_figures(back, whole, drawing)
+        beside += found.fits
+        findings += (*drawing.told, *found.findings)
         findings += comparison.findings
         findings += common_lines(back, closed, file.path) if closed else ()
         comparisons.append(comparison)
         figures[file.path] = cut_figures(back)
+        if not any(finding.fatal for finding in comparison.findings):
+            sides[file.path] = measured_file(back, drawing, machine.of_file(file.path).layers)
         entities += sum(entity.count for entity in back.entities)
-    return StageReport("write", "cut files", metrics(comparisons, entities), tuple(findings), {"files": figures})
+    detail: dict[str, object] = {"files": figures, "sides": sides}
+    measured = (*metrics(comparisons, entities), *offset_metrics(beside))
+    return StageReport("write", "cut files", measured, tuple(findings), detail)
 
 
 def _chord(drawing: Drawing, patterns: dict[str, FlatPattern]) -> float:

@@ -12,10 +12,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from stages.errors import NoSolutionError
-from stages.geometry.arcpath import ArcPath, area, bounds, length, lengths
+from stages.geometry.arcpath import ArcPath, area, backwards, bounds, length, lengths
 from stages.geometry.arrays import norm
 from stages.geometry.biarc import LEAST_PIECE_MM
 from stages.geometry.hausdorff import hausdorff
+from stages.geometry.outside import beyond
 from stages.geometry.sampling import Resolved, length_and_area, resolved
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
@@ -37,7 +38,10 @@ QUADRATURE = 1e-9
 CLOSURE_MM = 0.01
 """The gap at which a controller takes a contour for open."""
 
-FOLLOWED = frozenset({"ENGRAVE", "MARK", "CUT_INNER", "CUT_OUTER"})
+INSIDE_MM = JOINT_MM
+"""What the ends of arcs of a file may be off by rounding is no matter of the side."""
+
+FOLLOWED = frozenset({"ENGRAVE", "MARK", "CUT_SLIT", "LEAD", "CUT_INNER", "CUT_OUTER"})
 """The layers along which the head goes."""
 
 SINGLE_PIECES = frozenset({"CHAIN", "ARC"})
@@ -48,7 +52,10 @@ SHORTER = 1.0 - 1e-6
 
 @dataclass(frozen=True, slots=True)
 class ContourFigures:
-    """How one contour of a file compares with its exact edges; lengths in mm, errors relative."""
+    """How one contour of a file compares with its exact edges; lengths in mm, errors relative.
+
+    inside_mm: how far it lies inside them, if it must not.
+    """
 
     part: str
     contour: int
@@ -57,6 +64,7 @@ class ContourFigures:
     closure_mm: float
     length_error: float
     area_error: float
+    inside_mm: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,8 +115,18 @@ def metrics(comparisons: Sequence[Comparison], entities: int) -> tuple[Metric, .
         Metric("closure_gap_mm", gap.closure_mm, "mm", "proved", CLOSURE_MM, _where(gap)),
         Metric("area_error", by_area.area_error, where=_where(by_area)),
         Metric("length_error", by_length.length_error, where=_where(by_length)),
+        *_grown(contours),
         Metric("entities", float(entities), evidence="proved"),
     )
+
+
+def _grown(contours: Sequence[ContourFigures]) -> tuple[Metric, ...]:
+    """Return how far contours that must not lie inside the exact ones do so; nothing if all may."""
+    held = [(contour.inside_mm, contour) for contour in contours if contour.inside_mm is not None]
+    if not held:
+        return ()
+    furthest, contour = max(held, key=lambda pair: pair[0])
+    return (Metric("inside_mm", furthest, "mm", limit=INSIDE_MM, where=_where(contour)),)
 
 
 def cut_figures(back: ReadFile) -> dict[str, float]:
@@ -228,13 +246,13 @@ def _figures(
             continue
         contour = (pattern.outer, *pattern.inner)[item.contour]
         try:
-            yield _contour_figures(entity.path, entity.gap_mm, contour, item.part, item.contour)
+            yield contour_figures(entity.path, entity.gap_mm, contour, item.part, item.contour)
         except NoSolutionError as error:
             error.add_note(f"part {item.part!r}, stage write")
             raise
 
 
-def _contour_figures(path: ArcPath, gap_mm: float, contour: Contour, part: str, number: int) -> ContourFigures:
+def contour_figures(path: ArcPath, gap_mm: float, contour: Contour, part: str, number: int) -> ContourFigures:
     """Return how one contour as read compares with its exact edges; gap_mm: the widest between its entities."""
     edges = [resolved(edge, accuracy=GRID_SHARE * contour.chord_mm) for edge in contour.edges]
     deviation = hausdorff(edges, path, accuracy=contour.chord_mm)
@@ -247,7 +265,14 @@ def _contour_figures(path: ArcPath, gap_mm: float, contour: Contour, part: str, 
         max(_closure(path, edges), gap_mm),
         abs(length(path) - exact_length) / exact_length,
         abs(abs(area(path)) - abs(exact_area)) / abs(exact_area),
+        _inside(path, contour, edges) if contour.side == "outside" else None,
     )
+
+
+def _inside(path: ArcPath, contour: Contour, edges: Sequence[Resolved]) -> float:
+    """Return how far the exact edges reach beyond a path, mm; a full circle is read counter-clockwise in any case."""
+    turned = backwards(path) if area(path) * area(contour.path) < 0.0 else path
+    return beyond(edges, turned, accuracy=contour.chord_mm)
 
 
 def _closure(path: ArcPath, edges: Sequence[Resolved]) -> float:

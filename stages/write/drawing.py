@@ -7,7 +7,7 @@ along.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,12 +15,15 @@ from stages.geometry.arcpath import ArcPath, bounds, distances, piece_count, spl
 from stages.geometry.arrays import ArrayValue, Vector2
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
+from stages.model.helps import Helps
 from stages.model.pattern import LETTER_WIDTH, FlatPattern, Text
+from stages.model.report import Finding
 from stages.model.sheet import SheetLayout
-from stages.model.strokes import Stroke, strokes
+from stages.model.strokes import Stroke, seen_from_below, strokes, turned_over
 from stages.model.used import used_length_mm
 from stages.write.commonlines import in_turn, shared_cuts
 from stages.write.flavours import as_written
+from stages.write.onpart import on_part, region_of
 from stages.write.strokefont import lettering, reach
 
 LABEL_MOST_MM = 10.0
@@ -39,12 +42,20 @@ QUARTER_BULGE = 0.41421356237309503
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A path on a layer; `contour` numbers the contours of a part, the outer one 0, and is None for all else."""
+    """A path on a layer; `contour` numbers the contours of a part, the outer one 0, and is None for all else.
+
+    name: of the mark or hole, if it has one.  copy: which copy of the part on a sheet; 0 where there is but one.
+    begun: it counts where it begins.  nominal: the contour that it lies half a kerf beside, if it does.
+    """
 
     layer: str
     part: str
     path: ArcPath
     contour: int | None = None
+    name: str = ""
+    copy: int = 0
+    begun: bool = False
+    nominal: ArcPath | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,6 +82,7 @@ class Drawing:
 
     kerf_mm: parts this far apart share cuts (`stages.write.commonlines`); None: every outline is drawn whole.
     divided: the outlines that are not.
+    helps: what helps the process in it; told: the findings that say so.
     """
 
     path: str
@@ -78,6 +90,8 @@ class Drawing:
     labels: tuple[Label, ...]
     kerf_mm: float | None = None
     divided: tuple[ArcPath, ...] = ()
+    helps: Helps = field(default_factory=Helps)
+    told: tuple[Finding, ...] = ()
 
 
 def flat_drawing(pattern: FlatPattern, machine: Machine) -> Drawing:
@@ -88,9 +102,12 @@ def flat_drawing(pattern: FlatPattern, machine: Machine) -> Drawing:
 
 def sheet_drawing(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> Drawing:
     """Return the drawing of one nested sheet."""
-    parts = [_items(patterns[placement.part], placement.motion, machine) for placement in layout.placements]
+    parts = [
+        [replace(item, copy=placed.copy) for item in _items(patterns[placed.part], placed.motion, machine)]
+        for placed in layout.placements
+    ]
     items, divided = _sharing(parts, machine.common_kerf_mm)
-    items = [*_stock(layout, patterns, machine), *items]
+    items = [*stock_items(layout, patterns, machine), *items]
     labels = [label for placed in layout.placements for label in _texts(patterns[placed.part], placed.motion, machine)]
     path = machine.path(layout.sheet.id, layout.index)
     return Drawing(path, _written(items, machine), tuple(labels), machine.common_kerf_mm, divided)
@@ -119,7 +136,7 @@ def _sharing(parts: Sequence[Sequence[Item]], kerf_mm: float | None) -> tuple[li
     return made, tuple(part[-1].path for number, part in enumerate(parts) if number in sharing)
 
 
-def _stock(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> list[Item]:
+def stock_items(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> list[Item]:
     """Return the outline of a sheet, of a roll as far as it is used, that of what is left over, and the defects."""
     edges = [stock_outline(layout, patterns)]
     if layout.offcut is not None:
@@ -150,25 +167,33 @@ def extent(paths: Iterable[ArcPath]) -> tuple[float, float, float, float]:
 
 def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
     """Return the paths of one copy of a part, in the order of cutting."""
+    contours = (pattern.outer, *pattern.inner)
 
     def moved(stroke: Stroke) -> Item:
         path = transform(split(stroke.path, max_bulge=machine.max_bulge), motion)
-        return Item(stroke.layer, pattern.part, path, stroke.contour)
+        layer = seen_from_below(stroke.layer) if turned_over(pattern, motion) else stroke.layer
+        nominal = None if stroke.contour is None else contours[stroke.contour].nominal
+        beside = None if nominal is None else transform(nominal, motion)
+        return Item(layer, pattern.part, path, stroke.contour, stroke.name, nominal=beside)
 
     return [*_engraved(pattern, motion, machine), *(moved(stroke) for stroke in strokes(pattern))]
 
 
 def _engraved(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
-    """Return the part's name and texts as strokes if the machine wants that, and they are not among its marks."""
+    """Return the part's name and texts as strokes if the machine wants that, and they are not among its marks.
+
+    What of them does not lie on the part is left out (`stages.write.clipped` says so).
+    """
     if machine.text == "TEXT" or any(mark.layer == "ENGRAVE" for mark in pattern.marks):
         return []
     name = _label(pattern, motion)
-    room = LABEL_FILL * _room(pattern) / max(reach(name.text), LEAST_REACH)
-    labels = [name.replace(height_mm=min(room, LABEL_MOST_MM)), *(_moved(text, motion) for text in pattern.texts)]
+    fits = LABEL_FILL * room(pattern) / max(reach(name.text), LEAST_REACH)
+    labels = [name.replace(height_mm=min(fits, LABEL_MOST_MM)), *(moved_text(text, motion) for text in pattern.texts)]
+    region = region_of([transform(contour.path, motion) for contour in (pattern.outer, *pattern.inner)])
     return [
         Item("ENGRAVE", pattern.part, path)
         for label in labels
-        for path in lettering(label.text, label.at, label.height_mm, label.angle_deg)
+        for path in on_part(lettering(label.text, label.at, label.height_mm, label.angle_deg), region)
     ]
 
 
@@ -176,10 +201,10 @@ def _texts(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Label
     """Return the part's name and the texts on it, unless they are strokes."""
     if machine.text == "strokes":
         return []
-    return [_label(pattern, motion), *(_moved(text, motion) for text in pattern.texts)]
+    return [_label(pattern, motion), *(moved_text(text, motion) for text in pattern.texts)]
 
 
-def _moved(text: Text, motion: Rigid2) -> Label:
+def moved_text(text: Text, motion: Rigid2) -> Label:
     """Return a text moved with its part: on a mirrored part its line is mirrored, its letters are not."""
     angle = 180.0 - text.angle_deg if motion.mirrored else text.angle_deg
     at = apply(motion, text.at[None, :])[0]
@@ -195,10 +220,10 @@ def _label(pattern: FlatPattern, motion: Rigid2) -> Label:
 def _label_height(pattern: FlatPattern) -> float:
     """Return the height in mm at which the name's box fits into the free circle around its place."""
     diagonal = float(np.hypot(LETTER_WIDTH * len(pattern.part), 1.0))
-    return float(np.clip(2.0 * LABEL_FILL * _room(pattern) / diagonal, LABEL_LEAST_MM, LABEL_MOST_MM))
+    return float(np.clip(2.0 * LABEL_FILL * room(pattern) / diagonal, LABEL_LEAST_MM, LABEL_MOST_MM))
 
 
-def _room(pattern: FlatPattern) -> float:
+def room(pattern: FlatPattern) -> float:
     """Return how far the label's place is from all contours, mm."""
     paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
     return min(_distance(pattern.label_at, split(path, max_bulge=QUARTER_BULGE)) for path in paths)

@@ -4,10 +4,13 @@ Millimetres in every header variable that bears on units, in every version: R12 
 readers look for are put into it.  Colour is written on each entity as well as on its layer.  No blocks, no splines.
 
 The text is a function of the drawing: clocks, GUIDs, user and program names are set to constants.  Coordinates are
-rounded to `DECIMALS` places of a mm.  Numbers that are not finite raise ValueError; ezdxf would write `nan`.
+rounded to `DECIMALS` places of a mm.  Numbers that are not finite raise ValueError, whoever put them into the document:
+all tags of the text are looked through, since ezdxf would write `nan`.
 """
 
+import re
 from io import StringIO
+from math import isfinite
 
 import numpy as np
 from ezdxf.document import Drawing as Document
@@ -39,7 +42,18 @@ UNKNOWN_TO_R12 = frozenset({"$INSUNITS", "$MEASUREMENT", "$DIMLUNIT", "$CELTSCAL
 PUT_INTO_R12 = ("$INSUNITS", "$MEASUREMENT")
 """R12 does not know them, yet readers of today look for them in it; old ones pass over what they do not know."""
 
+RECORD = r"(?:(?!  0\n).*\n)*"
+"""The tags of a record after its first."""
+
+LAYOUT_BLOCK = re.compile(
+    rf"  0\nBLOCK\n{RECORD}?  2\n\$(?:Model|Paper)_Space\n{RECORD}  0\nENDBLK\n{RECORD}", re.IGNORECASE
+)
+"""The empty block of a layout, which R12 does not need, and for which a reader of today gives up."""
+
 BEFORE = "  9\n$LUNITS\n"
+
+NUMBERS = ((10, 59), (110, 149), (210, 239), (460, 469), (1010, 1059))
+"""Group codes of floating-point numbers, first and last."""
 
 JULIAN_2000 = 2451545.0
 NO_GUID = "{00000000-0000-0000-0000-000000000000}"
@@ -69,9 +83,9 @@ def dxf_text(drawing: Drawing, machine: Machine) -> str:
         add_path(space, item, machine)
     for label in drawing.labels:
         add_label(space, label, machine.layers[label.layer])
-    _set_extents(document, extent(item.path for item in drawing.items))
-    text = _exported(document)
-    return _with_units(text) if machine.version == "R12" else text
+    set_extents(document, extent(item.path for item in drawing.items))
+    text = exported(document)
+    return in_r12(text) if machine.version == "R12" else text
 
 
 def unit_variables(version: str) -> dict[str, float]:
@@ -80,14 +94,15 @@ def unit_variables(version: str) -> dict[str, float]:
     return {name: float(value) for name, value in UNIT_VARIABLES.items() if name not in missing}
 
 
-def _with_units(text: str) -> str:
-    """Return the text of an R12 file with the variables for units that R12 itself lacks."""
+def in_r12(text: str) -> str:
+    """Return the text of an R12 file with the variables for units that R12 itself lacks, and no blocks of layouts."""
+    text = LAYOUT_BLOCK.sub("", text)
     added = "".join(f"  9\n{name}\n 70\n{UNIT_VARIABLES[name]}\n" for name in PUT_INTO_R12)
     before, place, after = text.partition(BEFORE)
     return f"{before}{added}{place}{after}"
 
 
-def _set_extents(document: Document, box: tuple[float, float, float, float]) -> None:
+def set_extents(document: Document, box: tuple[float, float, float, float]) -> None:
     """Write the bounding box and the units, in the header and in the layout it is copied from."""
     low_x, low_y, high_x, high_y = rounded(np.array(box), DECIMALS)
     layout = document.modelspace()
@@ -99,8 +114,10 @@ def _set_extents(document: Document, box: tuple[float, float, float, float]) -> 
     document.header["$LIMMIN"], document.header["$LIMMAX"] = (low_x, low_y), (high_x, high_y)
 
 
-def _exported(document: Document) -> str:
+def exported(document: Document, *, handles: bool = True) -> str:
     """Return the text, with what ezdxf sets on writing set back to constants.
+
+    handles: whether entities are numbered, as they must be after R12.
 
     The steps are those of ezdxf's `write`, which would read the clock after anything could be done about it.
     """
@@ -112,5 +129,24 @@ def _exported(document: Document) -> str:
         marks.discard(name)
     document.header["$LASTSAVEDBY"] = "planish"
     stream = StringIO()
-    document.export_sections(TagWriter(stream, write_handles=True, dxfversion=document.dxfversion))
-    return stream.getvalue()
+    document.export_sections(TagWriter(stream, write_handles=handles, dxfversion=document.dxfversion))
+    return finite(stream.getvalue())
+
+
+def finite(text: str) -> str:
+    """Return a DXF text as it is; ValueError where a tag that holds a number holds none, or one that is not finite.
+
+    Letters in a number are those of `nan` and `inf`, or an exponent: only values that have some are looked at.
+    """
+    lines = text.splitlines()
+    for place, (code, value) in enumerate(zip(lines[::2], lines[1::2], strict=False)):
+        if value.isnumeric() or not holds_number(int(code)) or not any(map(str.isalpha, value)):
+            continue
+        if not isfinite(float(value)):
+            raise ValueError(f"line {2 * place + 2} of a cut file must be a finite number: {value.strip()}")
+    return text
+
+
+def holds_number(code: int) -> bool:
+    """Return whether tags of a group code hold a number with a point (AutoCAD's DXF reference, "Group codes")."""
+    return any(first <= code <= last for first, last in NUMBERS)

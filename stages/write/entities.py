@@ -10,6 +10,7 @@ by the rounding of ten decimals, and by that of doubles as large as its radius.
 
 import numpy as np
 from ezdxf.enums import TextEntityAlignment
+from ezdxf.layouts.base import BaseLayout
 from ezdxf.layouts.layout import Modelspace
 
 from stages.geometry.arcpath import ArcPath, centres, chords, piece_count, radii, sweeps
@@ -36,7 +37,7 @@ def add_path(space: Modelspace, item: Item, machine: Machine) -> None:
     """Add the entities of a path; what is left of an outline that shares cuts is never a lone LINE."""
     attributes = _attributes(machine.layers[item.layer])
     path = item.path
-    round_one = circle(path)
+    round_one = None if item.begun else circle(path)
     if round_one is not None:
         centre_x, centre_y, radius = rounded(np.array(round_one), DECIMALS)
         space.add_circle((centre_x, centre_y), radius, dxfattribs=attributes)
@@ -48,7 +49,7 @@ def add_path(space: Modelspace, item: Item, machine: Machine) -> None:
         _add_polyline(space, path, attributes, old=machine.version == "R12")
 
 
-def add_label(space: Modelspace, label: Label, layer: Layer) -> None:
+def add_label(space: BaseLayout, label: Label, layer: Layer) -> None:
     """Add one centred text."""
     x, y, height, angle = rounded(np.array([*label.at, label.height_mm, label.angle_deg]), DECIMALS)
     text = space.add_text(label.text, height=height, dxfattribs={**_attributes(layer), "rotation": angle})

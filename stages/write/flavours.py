@@ -1,20 +1,26 @@
 """What a flavour makes of the paths of a pattern and of a drawing, before they are written.
 
 `polylines` knows no arcs: contours are traced again from their exact edges, by the fewest chords within the tolerance
-of the part; whoever nests or measures must have these, not the arcs (`as_cut`).  What is not cut follows its arcs.
+of the part.  Contours that must not lie inside the exact ones are traced again too.  Whoever nests or measures must
+have these, not the first ones (`as_cut`).  What is not cut follows its arcs.
 
 `lines-arcs`: lines alone on CUT_OUTER are common lines, so what is left of an outline is never one line; a contour of
 two arcs is cut into four, since neither of two tells which way it runs; and arcs of a radius that doubles no longer
 place well are lines.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from stages.geometry.arcpath import ArcPath, piece_count, polygon, radii, split
 from stages.geometry.arrays import norm
-from stages.geometry.inscribed import inscribed
+from stages.geometry.biarc import traced
+from stages.geometry.inscribed import chorded, inscribed
+from stages.geometry.outside import outside
 from stages.model.cutfile import Machine
-from stages.model.pattern import Contour, FlatPattern, Mark
+from stages.model.pattern import Contour, FlatPattern
+from stages.write.tracing import as_pattern
 
 STOCK_CHORD_MM = 0.02
 """How far the chords of what is not part of a pattern, the stock, may be off its arcs: nothing is cut along them."""
@@ -30,23 +36,37 @@ HALF = 0.6
 
 
 def as_cut(pattern: FlatPattern, machine: Machine) -> FlatPattern:
-    """Return the pattern with the contours and marks that a machine's flavour can hold."""
-    if machine.flavour != "polylines":
+    """Return the pattern with the contours and marks that a machine wants and its flavour can hold."""
+    if machine.flavour == "aama":
+        return as_pattern(pattern)
+    straight_only = machine.flavour == "polylines"
+    if not straight_only and machine.side == "either":
         return pattern
+    made = _grown if machine.side == "outside" else _straight
     chord = pattern.outer.chord_mm
     return pattern.replace(
-        outer=_straight(pattern.outer),
-        inner=tuple(map(_straight, pattern.inner)),
-        marks=tuple(Mark(mark.name, straight(mark.path, chord), mark.layer) for mark in pattern.marks),
+        outer=made(pattern.outer, machine),
+        inner=tuple(made(contour, machine) for contour in pattern.inner),
+        marks=tuple(replace(mark, path=straight(mark.path, chord)) for mark in pattern.marks)
+        if straight_only
+        else pattern.marks,
     )
 
 
-def _straight(contour: Contour) -> Contour:
+def _straight(contour: Contour, _: Machine) -> Contour:
     """Return the contour with a path of chords; one that has no arcs stays as it is."""
     if not contour.path.bulges.any():
         return contour
-    path = inscribed(contour.edges, accuracy=contour.chord_mm)
-    return Contour(contour.edges, path, contour.chord_mm, contour.name)
+    return replace(contour, path=inscribed(contour.edges, accuracy=contour.chord_mm))
+
+
+def _grown(contour: Contour, machine: Machine) -> Contour:
+    """Return the contour with a path that lies beside its edges, never within; one that does stays as it is."""
+    arcs = machine.flavour != "polylines"
+    if contour.side == "outside" and (arcs or not contour.path.bulges.any()):
+        return contour
+    path = outside(contour.edges, traced if arcs else chorded, accuracy=contour.chord_mm)
+    return replace(contour, path=path, side="outside")
 
 
 def straight(path: ArcPath, accuracy: float) -> ArcPath:

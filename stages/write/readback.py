@@ -27,6 +27,7 @@ from ezdxf.lldxf.const import DXFError
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Points3
 from stages.model.cutfile import PROFILES, Layer
+from stages.write.blocks import drawn
 from stages.write.chains import Entity, Writing, chained
 
 FULL_TURN = 360.0
@@ -55,7 +56,7 @@ def read(text: str, layers: Mapping[str, Layer] = PROFILES["planish"]) -> ReadFi
     """
     try:
         document = read_dxf(StringIO(text))
-        entities = chained([_meant(_entity(entity), layers) for entity in document.modelspace()])
+        entities = chained([_meant(_entity(entity), layers) for entity in drawn(document, layers)])
     except (DXFError, ValueError) as error:
         return ReadFile({}, (), {}, (f"cannot be read: {error}",))
     complaints = [f"{error.message}" for error in document.audit().errors]

@@ -15,7 +15,7 @@ from stages.geometry.arrays import Array
 from stages.write.chains import Entity
 from stages.write.closing import Closed, Outline
 
-RANK = {"ENGRAVE": 0, "MARK": 0, "CUT_INNER": 1, "CUT_OUTER": 2}
+RANK = {"ENGRAVE": 0, "MARK": 0, "CUT_SLIT": 0, "CUT_INNER": 1, "CUT_OUTER": 2}
 
 POLYGON_MM = 0.0125
 """How near the polygons come to the arcs that they stand for: a quarter of what a mark may reach beyond its outline."""

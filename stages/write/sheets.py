@@ -16,7 +16,7 @@ from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import SheetLayout
 from stages.write.chains import Entity
-from stages.write.drawing import Drawing, flat_drawing, sheet_drawing, stock_outline
+from stages.write.drawing import Drawing, Item, flat_drawing, sheet_drawing, stock_outline
 
 SHEETS_APART_MM = 50.0
 """Between sheets in one drawing: wide enough to see, and for whatever a machine adds around a sheet."""
@@ -73,10 +73,15 @@ def _moved(drawing: Drawing, shift: float) -> Drawing:
     """Return a drawing moved along x."""
     return replace(
         drawing,
-        items=tuple(replace(item, path=_shifted(item.path, shift)) for item in drawing.items),
+        items=tuple(_item_moved(item, shift) for item in drawing.items),
         labels=tuple(label.replace(at=label.at + np.array([shift, 0.0])) for label in drawing.labels),
         divided=tuple(_shifted(path, shift) for path in drawing.divided),
     )
+
+
+def _item_moved(item: Item, shift: float) -> Item:
+    nominal = None if item.nominal is None else _shifted(item.nominal, shift)
+    return replace(item, path=_shifted(item.path, shift), nominal=nominal)
 
 
 def _united(drawings: Sequence[Drawing]) -> Drawing:

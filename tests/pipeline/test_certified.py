@@ -117,3 +117,14 @@ def test_parts_that_share_cuts_are_certified_as_they_are_put_together_again() ->
         metrics, findings = certified_files([CutFile("cut/stock-1.dxf", text)], nest, parts, options)
         assert [finding.code for finding in findings] == wanted
         assert not wanted or metrics == ()
+
+
+def test_parts_in_files_of_their_own_are_measured_as_they_lie_on_the_sheets() -> None:
+    together = written(PARTS, GOOD, Machine(), OPTIONS).report
+    alone = written(PARTS, GOOD, Machine(file_per="part", file_name="{part}"), OPTIONS).report
+    assert alone.passed
+    for name in ("min_gap_mm", "min_edge_gap_mm", "overlap_mm2"):
+        assert alone.metric(name).value == pytest.approx(together.metric(name).value, abs=1e-8)
+    near = placed(600.0 - together.metric("min_gap_mm").value + 4.0)
+    report = written(PARTS, near, Machine(file_per="part", file_name="{part}"), OPTIONS).report
+    assert [one.code for one in report.findings] == ["gap"]

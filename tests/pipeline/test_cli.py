@@ -187,6 +187,15 @@ def test_lists_name_every_kind_and_material(capfd: pytest.CaptureFixture[str]) -
     assert "mild steel" in capfd.readouterr().out
 
 
+def test_the_schema_of_side_files_is_printed_on_request(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert planish("schema", "--side") == 0
+    schema = json.loads(capfd.readouterr().out)
+    assert planish("run", str(write_job(tmp_path)), "-o", str(tmp_path / "out")) == 0
+    side = json.loads((tmp_path / "out" / "flat" / "plate.json").read_text("utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(side)
+    assert [file["path"] for file in side["files"]] == ["flat/plate.dxf"]
+
+
 def test_the_schema_accepts_what_the_reader_accepts(capfd: pytest.CaptureFixture[str]) -> None:
     import tomllib
 

@@ -147,6 +147,17 @@ def test_stock_and_wishes_are_those_of_the_first_job_that_has_stock(folders: Fol
     assert group.notes == ('stock and wishes for the nest are those of job "first"',)
 
 
+def test_jobs_whose_drawings_hold_chords_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    job = write_job(tmp_path, JOBS["second"] + STOCK + '[dxf]\nflavour = "polylines"\n')
+    (tmp_path / "chords").mkdir()
+    write_files(tmp_path / "chords", outputs(run_job(job_of(read(job))))[1])
+    ((group, _),) = pooled([Path("chords")]).results
+    (note,) = group.notes[1:]
+    assert note.startswith('parts of "second" are nested and written as the chords that their drawings hold')
+    assert 'flavour = "polyline-arcs"' in note
+
+
 def test_groups_are_of_one_material_and_thickness_each(folders: Folders) -> None:
     result = pooled(folders("first", "thin", "second"))
     assert [group.name for group, _ in result.results] == ["mild-steel-2mm", "mild-steel-1.5mm"]
@@ -231,7 +242,8 @@ def test_a_group_that_does_not_fit_leaves_the_others_to_be_cut(folders: Folders)
     assert (result.status, result.exit_code) == ("no-solution", 3)
     report, produced = pool_outputs(result)
     assert [group["status"] for group in report["groups"]] == ["made", "no-solution"]  # type: ignore[attr-defined, index]
-    assert {path for path in produced if "/cut/" in path} == {"mild-steel-2mm/cut/big-1.dxf"}
+    cut = {path for path in produced if "/cut/" in path}
+    assert cut == {"mild-steel-2mm/cut/big-1.dxf", "mild-steel-2mm/cut/big-1.json"}
     assert "mild-steel-1.5mm could not be nested and written" in pool_lines(result, "out")[-1]
 
 

@@ -1,7 +1,7 @@
 import pytest
 
-from pipeline.jobfile import ProcessTable
 from pipeline.processes import limits, listing, look_up, table
+from pipeline.processtables import ProcessTable
 from stages.model.scalars import Length
 
 

@@ -110,9 +110,10 @@ def test_what_the_schema_describes_is_what_the_stages_say(
 def test_status_and_files_agree(tmp_path: Path, name: str, statuses: list[str], files: set[str]) -> None:
     report, produced = made(tmp_path, JOBS[name])
     assert [report["status"], entry(report, "nest", "status"), entry(report, "write", "status")] == statuses
-    assert set(produced) == {"report.json", *files}
+    drawings = [path for path in produced if path.endswith(".dxf")]
+    assert set(produced) == {"report.json", *files, *(path.replace(".dxf", ".json") for path in drawings)}
     listed = entry(report, "write", "files")
-    assert listed == [{"path": path, "sha256": sha256(produced[path]).hexdigest()} for path in produced if "/" in path]
+    assert listed == [{"path": path, "sha256": sha256(produced[path]).hexdigest()} for path in drawings]
 
 
 def test_mass_cut_length_and_pierces_have_closed_forms(tmp_path: Path) -> None:
@@ -149,7 +150,8 @@ def test_names_that_no_file_system_takes_stay_in_the_report_and_leave_the_files(
     assert entry(report, "nest", "sheets", 0, "stock") == "S/1"
     assert entry(report, "nest", "sheets", 0, "file") == "cut/S-1-1.dxf"
     assert entry(report, "nest", "sheets", 0, "placements", 0, "part") == "../Bö/ß"
-    assert set(produced) == {"report.json", "layout.json", "flat/Bo.dxf", "cut/S-1-1.dxf"}
+    drawn = {"flat/Bo.dxf", "flat/Bo.json", "cut/S-1-1.dxf", "cut/S-1-1.json"}
+    assert set(produced) == {"report.json", "layout.json", *drawn}
 
 
 WOUND = """\

@@ -8,27 +8,29 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import cast, get_args
 
+from stages.geometry.arcpath import length
 from stages.geometry.rigid import Rigid2
 from stages.model.cutfile import Flavour, Machine, Version
 from stages.model.pattern import FlatPattern, Mark
+from stages.model.patternlayers import BOUNDARY, CUT_OUT, PATTERN_LAYERS, VALIDATION
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.write import write
-from stages.write.drawing import Drawing, flat_drawing
+from stages.write.drawing import Drawing, Item, flat_drawing
 from stages.write.flavours import as_cut
+from stages.write.pieces import PatternFile, flat_file, sheet_files, style_file
 from stages.write.sheets import cut_drawings
 from tests.stages.write.patterns import contour, line_mark, nesting, pattern, plate, polygon_edges, sector, strip
+from tests.stages.write.pieces import flap
 
 FLAVOURS: tuple[Flavour, ...] = get_args(Flavour)
 VERSIONS: tuple[Version, ...] = get_args(Version)
+OLD = ("r12", "aama")
 
 
 def kinds() -> list[tuple[Flavour, Version]]:
     """Return every flavour in every version that holds it."""
     return [
-        (flavour, version)
-        for flavour in FLAVOURS
-        for version in VERSIONS
-        if (flavour == "r12" and version == "R12") or (flavour != "r12" and version != "R12")
+        (flavour, version) for flavour in FLAVOURS for version in VERSIONS if (flavour in OLD) == (version == "R12")
     ]
 
 
@@ -42,12 +44,22 @@ def asked() -> list[tuple[Flavour, Version]]:
 
 @dataclass(frozen=True)
 class Sample:
-    """A cut file as text, the drawing it was made from, and the figures that the write stage reports of it."""
+    """A cut file as text, the drawing it was made from, and the figures that the write stage reports of it.
+
+    pattern: whether it is a pattern file, whose layers have numbers that say more than their colours.
+    """
 
     name: str
     text: str
     drawing: Drawing
     figures: dict[str, float]
+    pattern: bool = False
+
+    @property
+    def cut_mm(self) -> float:
+        """How much of the drawing is cut."""
+        cut = (BOUNDARY, CUT_OUT) if self.pattern else ("CUT_OUTER", "CUT_INNER")
+        return sum(length(item.path) for item in self.drawing.items if item.layer in cut)
 
 
 def bent() -> FlatPattern:
@@ -74,6 +86,8 @@ def panels() -> Nesting:
 @cache
 def samples(flavour: Flavour, version: Version) -> tuple[Sample, ...]:
     """Return every sample in one flavour and version."""
+    if flavour == "aama":
+        return _patterns()
     machine = Machine(flavour=flavour, version=version)
     first = Nesting(nesting().layouts[:1])
     common = replace(machine, common_kerf_mm=COMMON_KERF_MM)
@@ -93,7 +107,38 @@ def _made(parts: list[FlatPattern], nest: Nesting | None, machine: Machine) -> l
     drawings += cut_drawings(nest.layouts if nest else (), {one.part: one for one in drawn}, machine)
     figures = cast("dict[str, dict[str, float]]", outcome.report.detail["files"])
     pairs = zip(outcome.product, drawings, strict=True)
-    return [
-        Sample(file.path.split("/")[1].removesuffix(".dxf"), file.text, drawing, figures[file.path])
-        for file, drawing in pairs
-    ]
+    return [Sample(_name(file.path), file.text, drawing, figures[file.path]) for file, drawing in pairs]
+
+
+def _patterns() -> tuple[Sample, ...]:
+    """Return pattern files: of each part, of all of them, and of a sheet."""
+    machine = Machine(flavour="aama", version="R12", layers=PATTERN_LAYERS)
+    parts = [as_cut(part, machine) for part in (strip(), plate(), bent(), sector(), flap())]
+    first = nesting().layouts[:1]
+    outcome = write(parts, Nesting(first), machine)
+    assert outcome.report.passed, outcome.report.findings
+    files = [flat_file(part, machine) for part in parts]
+    files += [style_file(parts, machine), *sheet_files(first, {part.part: part for part in parts}, machine)]
+    figures = cast("dict[str, dict[str, float]]", outcome.report.detail["files"])
+    return tuple(
+        Sample(_name(text.path), text.text, _said(file, machine), figures[text.path], pattern=True)
+        for file, text in zip(files, outcome.product, strict=True)
+    )
+
+
+def _said(file: PatternFile, machine: Machine) -> Drawing:
+    """Return the lines and texts of a pattern file as a drawing, on the layers that the file has."""
+    items = [Item(machine.layers[line.layer].name, "", line.path) for line in file.stock]
+    labels = [*file.style]
+    for piece in file.pieces:
+        labels += piece.texts
+        for line in piece.lines:
+            layer = machine.layers[line.layer].name
+            items.append(Item(layer, piece.part, line.path, line.contour))
+            if line.traced is not None:
+                items.append(Item(VALIDATION[layer], piece.part, line.traced.finer))
+    return Drawing(file.path, tuple(items), tuple(labels))
+
+
+def _name(path: str) -> str:
+    return path.split("/")[1].removesuffix(".dxf")

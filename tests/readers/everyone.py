@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stages.model.cutfile import Flavour, Version
-from tests.readers import freecad, gdal, inkscape, librecad, npm, openscad, trimeshed
+from tests.readers import dia, freecad, gdal, inkscape, librecad, npm, openscad, programs, trimeshed
 from tests.readers.drawings import Sample, samples
 from tests.readers.reading import Reader, Reading, can_read, complaints
 
@@ -19,6 +19,14 @@ READERS: tuple[Reader, ...] = (
     trimeshed.READER,
     npm.DXF,
     npm.PARSER,
+    npm.JSON,
+    npm.JSCAD,
+    programs.DXFGRABBER,
+    programs.DXFLIB,
+    programs.DXF2GCODE,
+    programs.BCNC,
+    programs.DIME,
+    dia.READER,
     openscad.READER,
 )
 

@@ -13,6 +13,8 @@ import numpy as np
 from tests.readers.reading import Fineness, Piece, Reader, Reading
 
 STEP_DEG = 1.0
+BLOCKS = ("--config", "DXF_MERGE_BLOCK_GEOMETRIES", "FALSE")
+"""Unasked, it merges all of a block into one geometry on the layer that the block is inserted on."""
 
 
 def available() -> bool:
@@ -25,12 +27,12 @@ def read(paths: Sequence[Path]) -> dict[str, Reading]:
 
 def _read(path: Path) -> Reading:
     """Return what `ogr2ogr` says in well-known text, a line for each entity."""
-    options = ["--config", "OGR_ARC_STEPSIZE", str(STEP_DEG), "-lco", "GEOMETRY=AS_WKT"]
+    options = ["--config", "OGR_ARC_STEPSIZE", str(STEP_DEG), "-lco", "GEOMETRY=AS_WKT", *BLOCKS]
     command = ["ogr2ogr", *options, "-f", "CSV", "/vsistdout/", str(path)]
     answer = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
     csv.field_size_limit(10**8)
     rows = list(csv.DictReader(answer.splitlines()))
-    texts = tuple(row["Text"] for row in rows if row["WKT"].startswith("POINT"))
+    texts = tuple(row["Text"] for row in rows if row["WKT"].startswith("POINT") and row["Text"])
     lines = [(row["Layer"], ring) for row in rows for ring in _rings(row["WKT"])]
     return Reading(tuple(Piece(layer, points, _meet(points)) for layer, points in lines), texts)
 

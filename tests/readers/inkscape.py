@@ -33,7 +33,11 @@ for path in paths:
     runpy.run_path(importer, run_name="__main__")
 """
 
+DOT = "A 0.250000,0.250000 "
+"""What it draws for a POINT: a dot of a quarter of a pixel."""
+
 SVG = "{http://www.w3.org/2000/svg}"
+HREF = "{http://www.w3.org/1999/xlink}href"
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
@@ -52,9 +56,13 @@ def _read(picture: bytes) -> Reading:
     root = ElementTree.fromstring(picture)
     height = float(root.get("height", "0"))
     pieces, texts = [], []
+    symbols = {f"#{one.get('id')}": one for one in root.iter(f"{SVG}symbol")}
     for group in root.findall(f"{SVG}g"):
+        group.extend([symbols[use.get(HREF, "")] for use in group.findall(f"{SVG}use")])
         texts += ["".join(one.itertext()) for one in group.iter(f"{SVG}text")]
         for line in group.iter(f"{SVG}path"):
+            if DOT in line.get("d", ""):
+                continue
             points, closed = _points(line.get("d", ""))
             pieces.append(Piece(group.get(LABEL, ""), (points * [1.0, -1.0] + [0.0, height]) * PIXEL_MM, closed))
     return Reading(tuple(pieces), tuple(texts))
@@ -98,4 +106,4 @@ def _arc(start: Points2, numbers: list[float]) -> Points2:
     return np.column_stack([points.real, points.imag])
 
 
-READER = Reader("Inkscape", available, read, Fineness(step_rad=STEP_RAD, grid_mm=GRID_MM))
+READER = Reader("Inkscape", available, read, Fineness(step_rad=STEP_RAD, grid_mm=GRID_MM), block_layers=False)

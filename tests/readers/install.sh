@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the readers of DXF that the tests ask: Debian's packages where there is apt and the right to use it, packages
-# of npm where there is npm.  What cannot be had is said and left out, and its tests are skipped by name: this never fails.
+# of npm where there is npm, of Python where there is pip; what is a library for C++ is built into a program that asks it.
+# What cannot be had is said and left out, and its tests are skipped by name: this never fails.
 cd "$(dirname "$0")"
 
 say() { echo "readers: $*" >&2; }
@@ -33,10 +34,34 @@ debian /usr/lib/python3/dist-packages/numpy python3-numpy
 debian /usr/lib/python3/dist-packages/cssselect python3-cssselect
 debian freecadcmd freecad-python3
 debian openscad openscad
+debian dxf2gcode dxf2gcode
+debian bCNC bcnc
+debian dia dia
+debian /usr/include/dxflib/dl_dxf.h libdxflib-dev
+debian /usr/include/dime/Model.h libdime-dev
+
+built() {  # library, header that shows that it is there, more for the compiler
+    local name=$1 sign=$2
+    shift 2
+    if [ build/"$name" -nt programs/"$name".cpp ]; then return; fi
+    if [ ! -e "$sign" ] || ! command -v g++ >/dev/null; then say "$name cannot be built: its tests are skipped"; return; fi
+    mkdir -p build
+    quietly g++ -O1 -w -o build/"$name" programs/"$name".cpp "$@" || say "$name does not build: its tests are skipped"
+}
+
+built dxflib /usr/include/dxflib/dl_dxf.h -I/usr/include/dxflib -ldxflib
+built dime /usr/include/dime/Model.h -ldime
+
+if [ ! -d python_modules/dxfgrabber ]; then
+    quietly python3 -m pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: \
+        --target python_modules -r python.txt || say "pip gives nothing: the tests of its readers are skipped"
+fi
+debian pdftocairo poppler-utils
 
 if command -v npm >/dev/null && command -v node >/dev/null; then
-    if [ ! -e node_modules/.package-lock.json ] || [ package-lock.json -nt node_modules/.package-lock.json ]; then
-        quietly npm ci --ignore-scripts --no-audit --no-fund || say "npm gives nothing: the tests of its readers are skipped"
+    if ! cmp -s package-lock.json node_modules/.installed; then
+        if quietly npm ci --ignore-scripts --no-audit --no-fund; then cp package-lock.json node_modules/.installed
+        else say "npm gives nothing: the tests of its readers are skipped"; fi
     fi
 else
     say "no npm: the tests of its readers are skipped"

@@ -30,7 +30,7 @@ CURVE_POINTS = 33
 CIRCLE_STRAY = 2.8e-4
 """Cubic curves leave a circle by this share of its radius (4/3 (sqrt 2 - 1): 2.73e-4)."""
 
-LAYERS: dict[tuple[int, ...], str] = {
+LAYERS: dict[tuple[float, ...], str] = {
     (1, 0, 0): "CUT_OUTER",
     (0, 0, 1): "CUT_INNER",
     (0, 1, 0): "MARK",
@@ -39,6 +39,10 @@ LAYERS: dict[tuple[int, ...], str] = {
     (1, 1, 0): "LABEL",
 }
 """By the colours of the entities, AutoCAD's 1 to 6; grey is SHEET."""
+
+
+STYLE_TEXT = "Style Name: "
+"""By this a pattern file is told."""
 
 
 def available() -> bool:
@@ -67,10 +71,17 @@ def _print(paths: Sequence[Path], wishes: Sequence[str]) -> None:
 
 
 def _placed(path: Path) -> Iterator[Piece]:
-    """Yield the lines of a page where they are in the drawing: the middle of its extent is that of the page."""
-    middle = (_corner(path, "$EXTMIN") + _corner(path, "$EXTMAX")) / 2.0
-    for piece in _pieces(path.with_suffix(".pdf")):
-        yield Piece(piece.layer, piece.points + middle)
+    """Yield the lines of a page where they are in the drawing: the middle of its extent is that of the page.
+
+    Below the pieces of a pattern file there are texts, which count too: of those only the size is taken from the page.
+    """
+    low, high = _corner(path, "$EXTMIN"), _corner(path, "$EXTMAX")
+    pieces = list(_pieces(path.with_suffix(".pdf")))
+    place = (low + high) / 2.0
+    if STYLE_TEXT in path.read_text("ascii"):
+        place = low - np.min([piece.points.min(axis=0) for piece in pieces], axis=0)
+    for piece in pieces:
+        yield Piece(piece.layer, piece.points + place)
 
 
 def _corner(path: Path, variable: str) -> Points2:
@@ -112,14 +123,14 @@ def _page(path: Path) -> str:
     return max(texts, key=len).decode("latin-1")
 
 
-def _lines(page: str) -> Iterator[tuple[tuple[int, ...], Points2]]:
+def _lines(page: str) -> Iterator[tuple[tuple[float, ...], Points2]]:
     """Yield colour and points of all that is stroked, y upwards."""
-    colour: tuple[int, ...] = ()
+    colour: tuple[float, ...] = ()
     points: list[Points2] = []
     for line in page.splitlines():
         *words, operator = line.split() or [""]
         if operator == "SCN":
-            colour = tuple(round(float(word)) for word in words)
+            colour = tuple(round(float(word), 1) for word in words)
         elif operator == "m":
             points = [_at(words)]
         elif operator == "l":
@@ -144,4 +155,4 @@ def _cubic(start: Points2, others: Points2) -> Points2:
 
 STRAY_MM = STRAY_STEPS * STEP_MM + CIRCLE_STRAY * 20.0
 FINENESS = Fineness(grid_mm=STEP_MM, stray_mm=STRAY_MM)
-READER = Reader("LibreCAD", available, read, FINENESS, keeps_pieces=False)
+READER = Reader("LibreCAD", available, read, FINENESS, keeps_pieces=False, block_layers=False)

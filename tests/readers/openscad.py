@@ -12,9 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
+from stages.model.patternlayers import BOUNDARY, CUT_OUT
 from tests.readers.reading import Fineness, Piece, Reader, Reading
 
-ASKED = "CUT_OUTER", "CUT_INNER"
+ASKED = "CUT_OUTER", "CUT_INNER", BOUNDARY, CUT_OUT
+"""What is cut, as drawings and as pattern files call it."""
+
 STEP_DEG, STEP_MM = 0.5, 0.05
 """Its $fa and $fs: arcs take the larger step of the two, on the smallest radius of the samples, 4 mm, 0.72 degrees."""
 

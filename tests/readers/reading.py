@@ -110,6 +110,7 @@ class Reader:
 
     layered: whether it keeps layers; where it does not, figures are of all layers together.
     only: the layers that it is asked for, of files in which all contours on them are closed; none: all layers.
+    block_layers: whether it keeps the layers of what is in blocks; where it does not, those of pattern files are lost.
     keeps_pieces: whether its answer tells which lines and arcs belong to one contour, or none.
     """
 
@@ -120,6 +121,7 @@ class Reader:
     layered: bool = True
     keeps_pieces: bool = True
     only: tuple[str, ...] = ()
+    block_layers: bool = True
 
 
 def measured(reading: Reading, fineness: Fineness, layered: bool) -> dict[str, Figures]:
@@ -136,24 +138,25 @@ def _grouped(reading: Reading, layered: bool) -> dict[str, list[Piece]]:
 
 
 def _measured(pieces: list[Piece], fineness: Fineness) -> Figures:
-    """Return the figures of some pieces, joined by their ends."""
+    """Return the figures of some pieces, joined by their ends; a line there and back encloses nothing."""
     length = sum(_length(piece.points) for piece in pieces)
     whole = [piece.points for piece in pieces if _ends_meet(piece.points, fineness.off_mm)]
     open_ones = [piece.points for piece in pieces if not _ends_meet(piece.points, fineness.off_mm)]
     closed = [*whole, *loops(open_ones, fineness.off_mm)]
-    contours = sorted((abs(_area(loop)), _length(loop)) for loop in closed)
+    enclosed = [(abs(_area(loop)), _length(loop)) for loop in closed]
+    contours = sorted((area, around) for area, around in enclosed if area > fineness.off_mm * around)
     every = np.concatenate([piece.points for piece in pieces])
     (x0, y0), (x1, y1) = every.min(axis=0), every.max(axis=0)
     return Figures(length, tuple(contours), (float(x0), float(y0), float(x1), float(y1)))
 
 
 def loops(pieces: Sequence[Points2], off_mm: float) -> list[Points2]:
-    """Return the closed loops that open pieces make, each piece in at most one of them."""
+    """Return the closed loops that open pieces make, each piece in one at most; where several meet, the first."""
     left, found = list(pieces), []
     while left:
         chain = left.pop(0)
         while not _ends_meet(chain, off_mm):
-            nearest = min(range(len(left)), key=lambda k: _reach(chain, left[k]), default=None)
+            nearest = min(range(len(left)), key=lambda k: max(_reach(chain, left[k]), JOINED_MM), default=None)
             if nearest is None or _reach(chain, left[nearest]) > off_mm:
                 break
             further = left.pop(nearest)
@@ -215,9 +218,10 @@ def can_read(reader: Reader, sample: Sample) -> bool:
 
 def complaints(reader: Reader, reading: Reading, sample: Sample) -> list[str]:
     """Return what a reader got wrong, one line for each figure; empty: it read the file right."""
-    want = expected(sample, reader.layered)
+    layered = reader.layered and (reader.block_layers or not sample.pattern)
+    want = expected(sample, layered)
     want = {layer: figures for layer, figures in want.items() if not reader.only or layer in reader.only}
-    got = measured(reading, reader.fineness, reader.layered)
+    got = measured(reading, reader.fineness, layered)
     if set(got) != set(want):
         return [f"layers {sorted(got)} instead of {sorted(want)}"]
     count = len(reading.pieces)

@@ -3,6 +3,7 @@
 Right: length, area and number of the closed contours, place and size, layers and texts as far as the reader keeps
 them, in all files of `drawings` and in every version that holds the flavour; otherwise the first thing that is wrong.
 Whole: a contour of lines and arcs comes as one closed piece; loose: as pieces that meet; a print does not tell.
+Without layers: what is in blocks, as in pattern files, is read right but for its layers.
 Unit: a file that says inches instead of mm comes 25.4 times as large, or the reader takes numbers as they are.
 """
 
@@ -30,7 +31,9 @@ def cell(reader: Reader, flavour: Flavour) -> str:
     faults = [line for kind in kinds() if kind[0] == flavour for line in wrong(reader, *kind)]
     if faults:
         return f"wrong: {faults[0]}"
-    return f"right, {_pieces(reader, flavour)}" if reader.keeps_pieces else "right"
+    right = f"right, {_pieces(reader, flavour)}" if reader.keeps_pieces else "right"
+    lost = flavour == "aama" and reader.layered and not reader.block_layers
+    return f"{right}, without layers" if lost else right
 
 
 def unit(reader: Reader) -> str:
@@ -52,11 +55,12 @@ def _sample(name: str, flavour: Flavour) -> Sample:
 
 
 def _pieces(reader: Reader, flavour: Flavour) -> str:
-    """Return whether a contour of lines and arcs comes as one closed piece."""
+    """Return whether every contour of lines and arcs comes as one closed piece."""
     sector = _sample("sector", flavour)
     pieces = readings(reader, [sector])[sector.name].pieces
     ends = [dist(one.points[0], one.points[-1]) for one in pieces if len(one.points) > 2]
-    return "whole" if sum(gap <= JOINED_MM for gap in ends) == 1 else "loose"
+    closed = sum(item.path.closed for item in sector.drawing.items)
+    return "whole" if sum(gap <= JOINED_MM for gap in ends) == closed else "loose"
 
 
 def _width(reading: Reading) -> float:

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from stages.geometry.arcpath import length
 from stages.model.cutfile import Flavour, Version
 from tests.near import assert_relative
 from tests.readers import librecad
@@ -12,7 +11,14 @@ from tests.readers.drawings import FLAVOURS, asked, samples
 from tests.readers.everyone import READERS, must_be_here, wrong
 from tests.readers.reading import Reader
 
-READ_RIGHT: dict[str, tuple[Flavour, ...]] = {"OpenSCAD": ("lines-arcs", "polylines")}
+READ_RIGHT: dict[str, tuple[Flavour, ...]] = {
+    "OpenSCAD": ("lines-arcs", "polylines"),
+    "Dia": ("lines-arcs",),
+    "dime": ("lines-arcs", "polylines", "aama"),
+    "dxf2gcode": ("lines-arcs", "polylines", "r12", "aama"),
+    "dxf-json (npm)": ("polyline-arcs", "lines-arcs", "polylines", "r12"),
+    "jscad (npm)": ("polyline-arcs", "polylines"),
+}
 """What a reader can read, where that is not all: the table says so, and both of yes and no are kept true here."""
 
 
@@ -26,6 +32,20 @@ def test_every_file_is_read_right_or_the_table_says_so(reader: Reader, flavour: 
         assert faults == []
     else:
         assert faults != []
+
+
+@pytest.mark.parametrize(
+    ("flavour", "least"), [("polyline-arcs", 12), ("lines-arcs", 15), ("polylines", 15), ("r12", 12), ("aama", 12)]
+)
+def test_most_readers_read_a_flavour_right(flavour: Flavour, least: int) -> None:
+    """Of 16, by what is asked of each above; the one that reads lines and arcs wrong loses short arcs."""
+    assert len(READERS) == 16
+    assert sum(flavour in READ_RIGHT.get(reader.name, FLAVOURS) for reader in READERS) == least
+
+
+def test_every_flavour_has_readers_and_every_reader_a_flavour() -> None:
+    assert {reader.name for reader in READERS} >= set(READ_RIGHT)
+    assert all(READ_RIGHT.get(reader.name, FLAVOURS) for reader in READERS)
 
 
 @pytest.mark.readers
@@ -56,8 +76,9 @@ def test_the_length_of_trimesh_needs_straight_polylines_where_arcs_are_flat(tmp_
 @pytest.mark.parametrize(("flavour", "version"), asked())
 def test_readers_are_held_to_what_the_write_stage_reports(flavour: Flavour, version: Version) -> None:
     for sample in samples(flavour, version):
-        cut = sum(length(item.path) for item in sample.drawing.items if item.layer.startswith("CUT_"))
-        assert_relative(cut, sample.figures["cut_length_mm"], bound=1e-9, why="coordinates rounded to 1e-10 mm")
+        assert_relative(
+            sample.cut_mm, sample.figures["cut_length_mm"], bound=1e-9, why="coordinates rounded to 1e-10 mm"
+        )
 
 
 def test_the_samples_hold_what_a_cut_file_can_hold() -> None:

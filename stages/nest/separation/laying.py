@@ -213,6 +213,8 @@ def wall(shapes, rules, regions, pose, kind, bin_, x, y):
     k = rules.region[kind, bin_]
     if k == RECTANGLE:
         return 0.0
+    if distance_in(regions, k, x, y) > shapes.reach[kind] + CELLS * regions.cell[k]:
+        return 0.0
     complete(shapes, kind, pose)
     if not leaves(shapes, regions, k, pose, kind, x, y):
         return 0.0

@@ -1,19 +1,17 @@
 """What is to be laid where, as polygons, and the flat arrays that the kernels take.
 
-Discs inscribed in a shape are found on a grid, greedily: the largest first, each next one where the distance to the
-edge and to the discs so far is largest.  The distance to the edge of a region is sampled on a grid.
+Discs inscribed in shapes and distances to the edges of regions are those of `sampling`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from math import cos, radians, sin
-from typing import TypeAlias
 
 import numpy as np
 import shapely
-from shapely import MultiPolygon, Polygon
+from shapely import Polygon
 
+from stages.nest.separation.sampling import Area, field, poles
 from stages.nest.separation.state import (
     NOWHERE,
     RECTANGLE,
@@ -31,22 +29,12 @@ from stages.nest.separation.state import (
 HAIR_MM = 1e-7
 """Edges of a shape lie this far inside the true ones: parts that touch do not overlap."""
 
-MOST_POLES, COVERED, LEAST_POLE = 14, 0.9, 0.05
-"""Discs of a shape: so many, until they cover this share of it, none of less than this share of the largest radius."""
-
-POLE_GRID, FIELD_GRID = 64, 220
-"""Cells along the longer side of a shape for its discs, of a region for its distances."""
-
-KEPT = 64
-"""Discs and fields of so many areas are kept: every thread asks for the same ones, and they take longest of all."""
-
 QUARTERS = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
 
 EDGE_OF_NO_LENGTH = np.array([[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0] * 4, [0.0] * 4])
 DISC_OF_NO_RADIUS = np.diag([1.0, 1.0, 0.0])
 """What an edge and a disc are multiplied by to leave nothing of them but where they begin, or their middle."""
 
-Area: TypeAlias = Polygon | MultiPolygon
 Span = tuple[float, float]
 Ring = Sequence[tuple[float, float]]
 
@@ -156,7 +144,7 @@ def _shapes(problem: Problem, hair_mm: float) -> Shapes:
     return Shapes(
         np.concatenate(edges), _starts(edges), np.concatenate(tips), _starts(tips),
         np.ascontiguousarray(np.concatenate(discs).T), _starts(discs), np.sqrt([hull.area for hull in hulls]),
-        np.array(size),
+        np.array(size), np.array([float(np.linalg.norm(rows[:, :2], axis=1).max()) for rows in tips]),
     )  # fmt: skip
 
 
@@ -207,31 +195,6 @@ def tips_of(shape: Polygon) -> Floats:
     return np.hstack([points[:-1], way / np.linalg.norm(way, axis=1)[:, None]])
 
 
-@lru_cache(maxsize=KEPT)
-def poles(shape: Polygon) -> Floats:
-    """Return discs inside a shape, (n, 3): middle and radius, the largest first."""
-    low_x, low_y, high_x, high_y = shape.bounds
-    cell = max(high_x - low_x, high_y - low_y) / POLE_GRID
-    x, y = np.meshgrid(np.arange(low_x + cell / 2.0, high_x, cell), np.arange(low_y + cell / 2.0, high_y, cell))
-    points = shapely.points(x, y)
-    shapely.prepare(shape)
-    room = np.where(shapely.contains(shape, points), shapely.distance(shape.boundary, points), -1.0)
-    middle = shape.representative_point()
-    found: list[tuple[float, float, float]] = []
-    covered = 0.0
-    while len(found) < MOST_POLES and covered < COVERED * shape.area:
-        best = int(np.argmax(room))
-        radius = float(room.flat[best])
-        if radius <= (LEAST_POLE * found[0][2] if found else 0.0):
-            break
-        found.append((float(x.flat[best]), float(y.flat[best]), radius))
-        covered += np.pi * radius * radius
-        room = np.minimum(room, np.hypot(x - found[-1][0], y - found[-1][1]) - radius)
-    if not found:
-        found = [(middle.x, middle.y, float(shape.boundary.distance(middle)))]
-    return np.array(found)
-
-
 def _rules(problem: Problem) -> Rules:
     """Return the spans and regions of each kind in each bin."""
     count = (len(problem.kinds), len(problem.bins))
@@ -268,7 +231,7 @@ def _regions(regions: Sequence[Area]) -> Regions:
         )  # fmt: skip
     edges = [edges_of(region) for region in regions]
     points = [_ring_points(region) for region in regions]
-    fields = [_field(region) for region in regions]
+    fields = [field(region) for region in regions]
     start = np.concatenate([[0], np.cumsum([field.size for field, _, _ in fields])[:-1]]).astype(np.int64)
     return Regions(
         np.concatenate(edges), _starts(edges), np.concatenate(points), _starts(points),
@@ -282,23 +245,6 @@ def _ring_points(region: Area) -> Floats:
     """Return a point of each ring: a shape whose edges cross none is inside if it holds none of them, or outside."""
     rings = [ring for part in polygons(region) for ring in (part.exterior, *part.interiors)]
     return np.array([ring.coords[0][:2] for ring in rings], dtype=np.float64).reshape(-1, 2)
-
-
-@lru_cache(maxsize=KEPT)
-def _field(region: Area) -> tuple[Floats, tuple[float, float], float]:
-    """Return the distance to the edge on a grid, positive inside; where it starts, and its cell."""
-    low_x, low_y, high_x, high_y = region.bounds
-    cell = max(high_x - low_x, high_y - low_y) / FIELD_GRID
-    x, y = np.meshgrid(
-        np.arange(low_x - cell, high_x + 2.0 * cell, cell), np.arange(low_y - cell, high_y + 2.0 * cell, cell)
-    )
-    points = shapely.points(x, y)
-    shapely.prepare(region)
-    edge = region.boundary
-    shapely.prepare(edge)
-    away = shapely.distance(edge, points)
-    field = np.where(shapely.contains(region, points), away, -away)
-    return field, (low_x - cell, low_y - cell), cell
 
 
 __all__ = ["NOWHERE", "RECTANGLE", "Arrays", "Item", "Kind", "Problem", "Spot", "arrays", "empty_layout", "pose_for"]

@@ -22,6 +22,7 @@ class Shapes(NamedTuple):
     edges: (e, 4), start and end of each, a hair inside the true ones, so that what touches does not overlap.
     tips: (e, 4): a true corner and the direction of the edge that leaves it, unit length; `tip` says where they begin.
     poles: (3, p), centre and radius of discs inside the shape, the largest first.
+    weight: root of the area of the hull.  size: longer side of the box.  reach: farthest point from the middle.
     """
 
     edges: Floats
@@ -32,6 +33,7 @@ class Shapes(NamedTuple):
     pole: Whole
     weight: Floats
     size: Floats
+    reach: Floats
 
 
 class Rules(NamedTuple):

@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 from shapely import Polygon
 
-from stages.nest.separation.problem import Area, Item, Kind, Problem, Spot, polygons
+from stages.nest.separation.problem import Item, Kind, Problem, Spot, polygons
+from stages.nest.separation.sampling import Area
 
 
 @dataclass(frozen=True, slots=True, eq=False)

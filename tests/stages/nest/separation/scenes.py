@@ -13,7 +13,6 @@ from stages.geometry.rigid import Rigid2, apply
 from stages.nest.separation.laying import lay, turn_into
 from stages.nest.separation.problem import (
     QUARTERS,
-    Area,
     Arrays,
     Item,
     Kind,
@@ -24,6 +23,7 @@ from stages.nest.separation.problem import (
     inner,
     pose_for,
 )
+from stages.nest.separation.sampling import Area
 from stages.nest.separation.state import RECTANGLE, Layout, Pose, Tables, Weights
 from stages.nest.separation.tabling import tables_for
 

@@ -10,7 +10,8 @@ from shapely import MultiPolygon, Point, Polygon, affinity, box
 
 from stages.geometry.arrays import EPS
 from stages.nest.separation.laying import WALL, cost_at, distance_in, leaves, may_lie, overlap, wall
-from stages.nest.separation.problem import HAIR_MM, Area, Item, pose_for
+from stages.nest.separation.problem import HAIR_MM, Item, pose_for
+from stages.nest.separation.sampling import Area
 from stages.nest.separation.state import NOWHERE, RECTANGLE, Regions
 from tests.near import assert_near
 from tests.stages.nest.separation.scenes import (

@@ -10,9 +10,7 @@ from shapely import MultiPolygon, Point, Polygon, box
 
 from stages.geometry.arrays import EPS
 from stages.nest.separation.problem import (
-    COVERED,
     HAIR_MM,
-    MOST_POLES,
     NOWHERE,
     RECTANGLE,
     Item,
@@ -21,10 +19,10 @@ from stages.nest.separation.problem import (
     arrays,
     edges_of,
     inner,
-    poles,
     polygons,
     tips_of,
 )
+from stages.nest.separation.sampling import COVERED, MOST_POLES, poles
 from tests.near import assert_near
 from tests.stages.nest.separation.scenes import BY_QUARTERS, FREE, UPRIGHT, ell, figures, frame, kind, oblong, scene
 

@@ -1,0 +1,81 @@
+"""The helps of a file as read from its text: contours beside the nominal ones, leads clear of them.
+
+Leads are measured against all contours of the file; that each begins or ends on the contour beside it in the file is
+looked at first.  Gaps of tabs are those of `bridged`: a contour that does not close over them is an open one.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from stages.geometry.arcpath import ArcPath, backwards
+from stages.geometry.arrays import norm
+from stages.geometry.compensation import Fit
+from stages.geometry.leads import APART_MM, Obstacles
+from stages.model.helps import Helps
+from stages.model.report import Finding
+from stages.write.chains import Entity
+from stages.write.drawing import Drawing
+from stages.write.helps import LEAD, SHUT_LAYERS
+from stages.write.kerf import CUT_LAYERS, fits
+from stages.write.readback import ReadFile
+
+MEETS_MM = 1e-6
+"""How near a lead must come to the end of its cut: ends of arcs that are read are off by as much."""
+
+
+@dataclass(frozen=True, slots=True)
+class HelpFigures:
+    """What a file has of helps: its contours beside the nominal ones, and what is wrong."""
+
+    fits: tuple[Fit, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+
+def help_figures(back: ReadFile, whole: ReadFile, drawing: Drawing) -> HelpFigures:
+    """Return the helps of a file.  whole: the same file with its contours put together where they have tabs."""
+    helps = drawing.helps
+    if not helps.any:
+        return HelpFigures()
+    found = fits(whole.entities, drawing.items, helps.offset_mm) if helps.compensated else []
+    wrong = [*_lead_faults(back.entities, whole.entities, helps), *_offset_faults(found, drawing, helps)]
+    return HelpFigures(
+        tuple(found),
+        tuple(Finding(code, f"{drawing.path}: {text}", True, {"file": drawing.path}) for code, text in wrong),
+    )
+
+
+def _offset_faults(found: Sequence[Fit], drawing: Drawing, helps: Helps) -> Iterator[tuple[str, str]]:
+    """Yield that contours are not there to be compared."""
+    wanted = sum(item.nominal is not None for item in drawing.items)
+    if helps.compensated and len(found) != wanted:
+        yield "readback-offset", f"holds other contours than the {wanted} that lie beside nominal ones"
+
+
+def _lead_faults(entities: Sequence[Entity], whole: Sequence[Entity], helps: Helps) -> Iterator[tuple[str, str]]:
+    """Yield the leads that hang in the air, and those that come too near to a contour."""
+    obstacles = Obstacles([one.path for one in whole if one.layer in SHUT_LAYERS and one.path is not None])
+    least = max(helps.beam_mm / 2.0 - helps.offset_mm, APART_MM)
+    for place, entity in enumerate(entities):
+        if entity.layer != LEAD or entity.path is None:
+            continue
+        way = _ending(entity.path, entities[place - 1 : place], entities[place + 1 : place + 2])
+        if way is None:
+            yield "readback-lead", "a lead does not end on the cut beside it"
+        elif not obstacles.is_free(way, least):
+            yield "readback-lead", "a lead comes too near to a contour"
+
+
+def _ending(lead: ArcPath, before: Sequence[Entity], after: Sequence[Entity]) -> ArcPath | None:
+    """Return a lead such that its end lies on the cut beside it; None if neither end does.
+
+    Which way round it runs is not asked: an ARC has no direction.
+    """
+    for one, end in ((after, 0), (before, -1)):
+        cut = one[0].path if one and one[0].layer in CUT_LAYERS else None
+        if cut is None:
+            continue
+        at = cut.vertices[0 if cut.closed else end]
+        for way in (lead, backwards(lead)):
+            if float(norm(way.vertices[-1] - at)) <= MEETS_MM:
+                return way
+    return None

@@ -1,0 +1,59 @@
+"""Leads: where they come from, their lengths, on the waste side, and what is in their way."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from stages.geometry.arcpath import ArcPath, backwards, directions, length, transform
+from stages.geometry.clearance import inside, pieces
+from stages.geometry.leads import Obstacles, off, round_in, straight
+from stages.geometry.rigid import Rigid2
+from tests.near import assert_near
+from tests.stages.geometry.test_beside import CIRCLE, SQUARE
+
+EXACT = 1e-12
+ORIGIN = np.zeros(2)
+
+
+@pytest.mark.parametrize("angle", [pi / 6.0, pi / 2.0])
+def test_a_straight_one_arrives_from_the_right_at_its_angle(angle: float) -> None:
+    way = straight(ORIGIN, 0.0, 3.0, angle)
+    assert_near(length(way), 3.0, bound=EXACT, why="as asked for")
+    assert_near(directions(way)[1], [angle], bound=EXACT, why="to the direction of the path")
+    assert way.vertices[0, 1] < 0.0
+
+
+def test_an_arc_touches_the_path_and_leaves_its_mirror_image() -> None:
+    way = round_in(ORIGIN, 0.0, 2.0, pi / 2.0)
+    away = off(way, ORIGIN, 0.0)
+    assert_near(way.vertices, [[-2.0, -2.0], [0.0, 0.0]], bound=EXACT, why="a quarter circle")
+    assert_near(away.vertices, [[0.0, 0.0], [2.0, -2.0]], bound=EXACT, why="a quarter circle")
+    assert_near([directions(way)[1][0], directions(away)[0][0]], [0.0, 0.0], bound=EXACT, why="along the path")
+    assert_near([length(way), length(away)], [pi, pi], bound=EXACT, why="a quarter of 4 pi")
+
+
+def test_of_an_outline_it_is_outside_and_of_a_hole_inside() -> None:
+    for contour, held in ((SQUARE, False), (backwards(SQUARE), True)):
+        first, _ = directions(contour)
+        middle = (contour.vertices[0] + contour.vertices[1]) / 2.0
+        way = straight(middle, float(first[0]), 2.0, pi / 4.0)
+        assert bool(inside(way.vertices[:1], pieces(contour))[0]) is held
+
+
+def test_what_is_in_the_way_is_seen_by_its_distance() -> None:
+    way = straight(np.array([5.0, 0.0]), 0.0, 3.0, pi / 2.0)
+    below = transform(CIRCLE, Rigid2(5.0, -9.0))
+    obstacles = Obstacles([SQUARE, below])
+    assert_near(obstacles.room(way, 0, 5.0), 1.0, bound=EXACT, why="9 less 5 less 3")
+    assert obstacles.is_free(way, 0.99)
+    assert not obstacles.is_free(way, 1.01)
+    assert Obstacles([SQUARE]).room(way, 0, 5.0) == np.inf
+
+
+def test_a_way_through_its_own_contour_is_seen() -> None:
+    narrow = ArcPath(np.array([[0.0, 0], [10, 0], [10, 1], [0, 1]]), np.zeros(4), closed=True)
+    for length_mm, free in ((0.5, True), (1.5, False)):
+        way = straight(np.array([5.0, 1.0]), 0.0, length_mm, pi / 2.0)
+        hole = backwards(narrow)
+        assert Obstacles([hole]).leaves(way, 0) is free
