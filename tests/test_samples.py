@@ -149,6 +149,7 @@ def guard() -> dict:
     assert code == 0, report
     assert {name for name in files if name.startswith("flat/")} == {
         "flat/hood.dxf", "flat/collar.1.dxf", "flat/collar.2.dxf",
+        "flat/hood.json", "flat/collar.1.json", "flat/collar.2.json",
     }  # fmt: skip
     return {part["name"]: part for part in report["parts"]}
 

@@ -1,8 +1,8 @@
 """How badly two items overlap, looked up by their relative place: kernels.
 
 A table holds, for one shape beside another in one relative angle, what `convolution` finds on a grid over all places
-where they could overlap.  Only where shapes are simple and angles are lists;
-in every other case `laying` asks the shapes themselves.
+where they could overlap.  Only where shapes are simple and angles are lists; in every other case `laying` asks the
+shapes themselves.
 
 A cell where no segment of the convolution ends up is clear or covered as a whole; in all others the winding number of
 the place is found from that of one point of the cell.  The cost is linear between the corners of the cell.
