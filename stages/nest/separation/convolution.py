@@ -87,41 +87,36 @@ def sense(before, after):
 
 @compiled
 @no_type_check
-def convolved(one, one_ways, other, other_ways, rows):
-    """Fill in the segments (x0, y0, x1, y1) of the convolution of two outlines, and return how many there are.
+def swept(corners, corner_ways, edges, edge_ways, first_too, rows, count):
+    """Fill in the edges of an outline moved along where each is met on the turn at a corner of another; how many now.
 
-    Where edges are parallel those of the other count as turned a little further.
+    Where the other outline turns to the right the edges run backwards.
     """
-    count = 0
-    m, n = len(one), len(other)
+    m, n = len(corners), len(edges)
     for i in range(m):
-        before, after = one_ways[i - 1 if i > 0 else m - 1], one_ways[i]
+        before, after = corner_ways[i - 1 if i > 0 else m - 1], corner_ways[i]
         side = sense(before, after)
         if side == 0:
             continue
         begin, end = (before, after) if side > 0 else (after, before)
         for j in range(n):
-            if between(other_ways[j], begin, end, True):
+            if between(edge_ways[j], begin, end, first_too):
                 k = j + 1 if j + 1 < n else 0
                 s, e = (j, k) if side > 0 else (k, j)
-                rows[count, 0] = one[i, 0] + other[s, 0]
-                rows[count, 1] = one[i, 1] + other[s, 1]
-                rows[count, 2] = one[i, 0] + other[e, 0]
-                rows[count, 3] = one[i, 1] + other[e, 1]
-                count += 1
-    for j in range(n):
-        before, after = other_ways[j - 1 if j > 0 else n - 1], other_ways[j]
-        side = sense(before, after)
-        if side == 0:
-            continue
-        begin, end = (before, after) if side > 0 else (after, before)
-        for i in range(m):
-            if between(one_ways[i], begin, end, False):
-                k = i + 1 if i + 1 < m else 0
-                s, e = (i, k) if side > 0 else (k, i)
-                rows[count, 0] = one[s, 0] + other[j, 0]
-                rows[count, 1] = one[s, 1] + other[j, 1]
-                rows[count, 2] = one[e, 0] + other[j, 0]
-                rows[count, 3] = one[e, 1] + other[j, 1]
+                rows[count, 0] = corners[i, 0] + edges[s, 0]
+                rows[count, 1] = corners[i, 1] + edges[s, 1]
+                rows[count, 2] = corners[i, 0] + edges[e, 0]
+                rows[count, 3] = corners[i, 1] + edges[e, 1]
                 count += 1
     return count
+
+
+@compiled
+@no_type_check
+def convolved(one, one_ways, other, other_ways, rows):
+    """Fill in the segments (x0, y0, x1, y1) of the convolution of two outlines, and return how many there are.
+
+    Where edges are parallel those of the other count as turned a little further.
+    """
+    count = swept(one, one_ways, other, other_ways, True, rows, 0)
+    return swept(other, other_ways, one, one_ways, False, rows, count)
