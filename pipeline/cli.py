@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pipeline.run import Step
     from stages.errors import Problem
 
-EXIT_USAGE, EXIT_INTERNAL, EXIT_INTERRUPTED = 2, 4, 130
+EXIT_WORSE, EXIT_USAGE, EXIT_INTERNAL, EXIT_INTERRUPTED = 1, 2, 4, 130
 TRACEBACK = "PLANISH_TRACEBACK"
 """Set in the environment, it shows where in the program an internal error arose."""
 
@@ -117,6 +117,43 @@ def check(job: Path, settings: tuple[str, ...], as_json: bool) -> None:
 
 
 @cli.command()
+@click.argument("out", type=click.Path(path_type=Path), metavar="OUT")
+@click.argument("measured", required=False, type=click.Path(path_type=Path), metavar="[MEASURED.csv]")
+@click.option("--template", "empty", is_flag=True, help="Write an empty sheet of measurements to stdout.")
+@click.option("--job", type=click.Path(path_type=Path), metavar="JOB.toml", help="Needed for points: the job of OUT.")
+@Settings
+@click.option("-o", "target", type=click.Path(path_type=Path), help="compare.json beside MEASURED.csv if absent.")
+@AsJson
+def compare(
+    out: Path,
+    measured: Path | None,
+    *,
+    empty: bool,
+    job: Path | None,
+    settings: tuple[str, ...],
+    target: Path | None,
+    as_json: bool,
+) -> None:
+    """Compare measurements of made parts with a finished job, and fit kerf, K-factor and springback to them."""
+    from pipeline.asmade import FILE, comparison, keep
+    from pipeline.asmade_document import compare_document, compare_lines
+    from pipeline.asmade_nominal import nominal_of
+    from pipeline.asmade_sheet import template
+    from pipeline.report.document import encoded
+
+    if empty == (measured is not None):
+        raise click.UsageError("give either a sheet of measurements or --template")
+    if measured is None:
+        click.echo(template(nominal_of(out)).encode(), nl=False)
+        return
+    made = comparison(out, measured, None if job is None else load(job, settings, quiet=True))
+    content = encoded(compare_document(made))
+    keep(target or measured.with_name(FILE), content)
+    click.echo(content if as_json else "\n".join(compare_lines(made)), nl=not as_json)
+    sys.exit(1 if made.failed else 0)
+
+
+@cli.command()
 @click.argument("kind")
 def init(kind: str) -> None:
     """Print a commented job file for a KIND of surface; it runs as it is."""
@@ -126,13 +163,37 @@ def init(kind: str) -> None:
 
 
 @cli.command()
-@click.option("--side", is_flag=True, help="Of the side files that lie beside drawings, not of the job file.")
-def schema(side: bool) -> None:
-    """Print the JSON Schema of the job file."""
+@click.option("--side", "which", flag_value="side", help="Of the side files that lie beside drawings.")
+@click.option("--report", "which", flag_value="report", help="Of report.json.")
+@click.option("--compare", "which", flag_value="compare", help="Of compare.json.")
+def schema(which: str | None) -> None:
+    """Print the JSON Schema of the job file, or of another file."""
+    from pipeline.asmade_document import compare_schema
     from pipeline.kinds import json_schema
+    from pipeline.report.schema import report_schema
     from pipeline.sidefiles import side_schema
 
-    click.echo(side_schema() if side else json_schema())
+    click.echo({None: json_schema, "side": side_schema, "report": report_schema, "compare": compare_schema}[which]())
+
+
+@cli.command()
+@click.argument("folders", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="OUT [OTHER]")
+@click.option("--format", "also", multiple=True, metavar="NAME", help="A format beside those the job asked for.")
+@AsJson
+@click.option("--quiet", is_flag=True, help="No messages but errors.")
+def report(folders: tuple[Path, ...], also: tuple[str, ...], *, as_json: bool, quiet: bool) -> None:
+    """Render the report of a finished job again, or compare those of two runs: exit code 1 if the second is worse."""
+    from pipeline.reports import compared, render_again
+
+    if len(folders) == 1:
+        again, paths = render_again(folders[0], also)
+        for path in () if quiet else paths:
+            message(str(folders[0] / path))
+        click.echo(again.content if as_json else "", nl=False)
+        return
+    data, worse = compared(folders, also, as_json=as_json)
+    click.echo(data, nl=False)
+    sys.exit(EXIT_WORSE if worse else 0)
 
 
 @cli.command()

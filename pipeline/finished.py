@@ -82,6 +82,7 @@ class JobEntry(Struct, frozen=True):
     material: MaterialEntry
     tolerance: ToleranceEntry
     dxf: DxfEntry
+    formats: tuple[str, ...] = ("json", "png")
 
 
 class FlatEntry(Struct, frozen=True):
@@ -146,7 +147,7 @@ class ReportEntry(Struct, frozen=True):
 class Finished:
     """A finished job: its patterns by the names of its parts, and what they were to be cut from.
 
-    paths: of the drawings of the parts below the folder, by their names.  pictures: whether it has some.
+    paths: of the drawings of the parts below the folder, by their names.
     """
 
     folder: Path
@@ -157,7 +158,6 @@ class Finished:
     machine: Machine
     rates: Rates
     paths: dict[str, str]
-    pictures: bool
     report_digest: str
 
 
@@ -184,7 +184,6 @@ def finished(folder: Path) -> Finished:
         job.dxf.machine(),
         report.nest.cost.rates,
         _paths(report),
-        (folder / "preview").is_dir(),
         digest(content),
     )
 

@@ -55,7 +55,7 @@ class Job:
     options: NestOptions = field(default_factory=NestOptions)
     tolerances: Tolerances = field(default_factory=Tolerances)
     machine: Machine = field(default_factory=Machine)
-    pictures: bool = False
+    formats: tuple[str, ...] = ()
     customer: str | None = None
     revision: str | None = None
     units: str = "mm"
@@ -84,7 +84,7 @@ def job_of(read: ReadJob) -> Job:
         options=options_of(tables.nest, process.kerf_mm),
         tolerances=_tolerances(tables),
         machine=replace(machine_of(tables.dxf), helps=helps),
-        pictures="png" in tables.report.formats,
+        formats=tables.report.formats,
         customer=tables.job.customer,
         revision=tables.job.revision,
         units=tables.units,

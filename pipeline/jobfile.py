@@ -119,10 +119,17 @@ class ToleranceTable(Table, frozen=True, kw_only=True):
         yield from negatives(self, "join")
 
 
-class ReportTable(Table, frozen=True, kw_only=True):
-    """What is reported: report.json always; png: a picture of every part and sheet in preview/."""
+FormatName = Literal["json", "png", "csv", "junit", "html", "traveller"]
 
-    formats: tuple[Literal["json", "png"], ...] = ("json", "png")
+
+class ReportTable(Table, frozen=True, kw_only=True):
+    """What is reported: report.json always; png: a picture of every part and sheet in preview/; csv: results.csv.
+
+    junit: junit.xml, for systems that show the results of tests.  html: report.html, and view.json, what it draws.
+    traveller: traveller.pdf, the pages that go with the job through the shop.
+    """
+
+    formats: tuple[FormatName, ...] = ("json", "png", "csv", "junit", "html", "traveller")
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield a list without json: the report is the record of the job."""

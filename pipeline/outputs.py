@@ -1,5 +1,6 @@
 """Everything that goes into the output folder of a job: report, drawings, pictures."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from pipeline.files import drawings, file_names
@@ -7,6 +8,7 @@ from pipeline.layouts import LAYOUT, layout_document
 from pipeline.remnants import REMNANTS, remnant_document
 from pipeline.report.document import Document, class_of, document, encoded
 from pipeline.report.lines import stage_line, trouble_lines
+from pipeline.report.render import Made, as_json_has_it, rendered
 from pipeline.run import JobResult, PartRun
 from pipeline.sidefiles import side_files
 from pipeline.store import REPORT
@@ -19,8 +21,13 @@ def outputs(result: JobResult) -> tuple[Document, dict[str, bytes]]:
     """Return the report, and every file by its path below the output folder."""
     files = drawings(result)
     report = document(result, files)
-    every = {**stored(result), **files, **side_files(result, files), **pictures(result)}
-    return report, {REPORT: encoded(report), **every}
+    every = {**stored(result), **files, **side_files(result, files), **pictures(result), **views(result)}
+    return report, with_formats(encoded(report), every)
+
+
+def with_formats(report: bytes, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the report, the files beside it, and the report in the formats that the job asks for."""
+    return {REPORT: report, **files, **rendered(Made(as_json_has_it(report), files))}
 
 
 def stored(result: JobResult) -> dict[str, bytes]:
@@ -29,9 +36,18 @@ def stored(result: JobResult) -> dict[str, bytes]:
     return {name: encoded(content) for name, content in documents.items() if content is not None}
 
 
+def views(result: JobResult) -> dict[str, bytes]:
+    """Return what the page of the report and the traveller draw, if the job asks for one of them."""
+    if not {"html", "traveller"} & {*result.job.formats}:
+        return {}
+    from pipeline.report.viewdata import VIEW, view_bytes, view_document
+
+    return {VIEW: view_bytes(view_document(result, worst_v))}
+
+
 def pictures(result: JobResult) -> dict[str, bytes]:
     """Return a picture of every surface with its pattern and of every nested sheet, if the job asks for them."""
-    if not result.job.pictures:
+    if "png" not in result.job.formats:
         return {}
     from pipeline.report.pictures import part_picture, sheet_picture
 

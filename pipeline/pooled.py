@@ -150,7 +150,7 @@ def _of_first(jobs: Mapping[str, Finished]) -> Supply:
     """Return stock and wishes of the first job that has stock; no stock if none has."""
     name, job = next(((name, job) for name, job in jobs.items() if job.stock), next(iter(jobs.items())))
     rows = tuple(Row(sheet) for sheet in job.stock)
-    return Supply(f'job "{name}"', rows, job.options, job.machine, job.rates, job.pictures)
+    return Supply(f'job "{name}"', rows, job.options, job.machine, job.rates, job.job.formats)
 
 
 def _notes(material: Material, jobs: Mapping[str, Finished], supply: Supply) -> Iterator[str]:
@@ -188,7 +188,7 @@ def run_group(runner: Runner, group: Group) -> JobResult:
         stock=group.stock,
         options=supply.options,
         machine=supply.machine,
-        pictures=supply.pictures,
+        formats=supply.formats,
         repairs=supply.repairs,
         notes=group.notes,
         rates=supply.rates,

@@ -23,7 +23,7 @@ REPORT_SCHEMA = "planish-report/"
 POOL_SCHEMA = "planish-pool/"
 OURS = frozenset({
     REPORT, "cut", "flat", "pieces", "preview", "layout.json", "remnant.json", "remnants", "report.html",
-    "traveller.pdf", "results.csv", "junit.xml",
+    "traveller.pdf", "results.csv", "junit.xml", "report", "view.json",
 })  # fmt: skip
 """What an output folder may hold at its top."""
 HARMLESS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})

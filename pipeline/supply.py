@@ -74,7 +74,7 @@ class Supply:
     options: NestOptions
     machine: Machine
     rates: Rates
-    pictures: bool
+    formats: tuple[str, ...]
     inputs: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
     repairs: tuple[Finding, ...] = ()
@@ -104,7 +104,7 @@ def supply_of(file: Path) -> Supply:
         options=options_of(tables.nest, kerf),
         machine=replace(machine_of(tables.dxf), helps=helps_of(tables.process, kerf, Material())),
         rates=rates_of(tables.process, tables.nest),
-        pictures="png" in tables.report.formats,
+        formats=tables.report.formats,
         inputs=inputs,
         notes=(*sources.notes, *stock.told),
         repairs=stock.repairs,

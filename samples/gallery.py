@@ -13,6 +13,7 @@ PICTURES = {
     "bracket": ("bracket",),
     "cladding": ("fascia", "handrail-band"),
     "ducts": ("transition", "galvanised-1"),
+    "flanges": ("plate-1",),
     "guard": ("hood",),
     "hides": ("right-1",),
     "hopper": ("offset-cone", "plate-1"),

@@ -4,15 +4,20 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import jsonschema
+
 from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.outputs import outputs
+from pipeline.report.schema import report_schema
 from pipeline.run import run_job
 from tests.near import assert_relative
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 LAST_DIGITS = 1e-12
 """What the program promises for lengths and areas, relative."""
+KEEPS_SCHEMA = jsonschema.Draft202012Validator(json.loads(report_schema()))
+"""The published schema: the report of every sample is held against it."""
 SHORT_SEARCH = "nest.time_limit=0.2"
 """For samples whose figures do not depend on how well the parts are nested."""
 
@@ -21,6 +26,7 @@ def run(name: str, *changes: str) -> tuple[dict, int, dict[str, bytes]]:
     """Return the report, the exit code and the files of a sample, without pictures."""
     result = run_job(job_of(read(SAMPLES / name, ["report.formats=['json']", *changes])))
     report, files = outputs(result)
+    KEEPS_SCHEMA.validate(json.loads(files["report.json"]))
     return json.loads(json.dumps(report)), result.exit_code, files
 
 

@@ -4,45 +4,30 @@
     share of a part    for each copy what its area is of that of all parts on its sheet: of the sheet, its price and net
     time               length of the cuts / speed + pierces x pierce_time; travel between the cuts is not counted
 
-Lengths and pierces of a sheet are those of its file as read back; those of a part are of its own contours, so that
-together they are more where neighbours share a cut.  What is not known is None, and whatever follows from it is too.
+Lengths and pierces of a sheet are those of its file as read back: leads are cut, gaps of tabs are not.  Those of a part
+are of its own contours, or with helps for the process of its paths in the files, so that together they are more where
+neighbours share a cut.  What is not known is None, and whatever follows from it is too.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import fsum
 from typing import TYPE_CHECKING
 
-from pipeline.files import FileNames, file_names
+from pipeline.files import file_names
 from pipeline.rates import Rates
+from pipeline.report.cuts import SECONDS_PER_MINUTE, Cuts, cuts_of_copies, cuts_of_sheets, whole
+from pipeline.report.figures import figures
 from pipeline.report.stockfigures import MM_PER_M, cost
 
 if TYPE_CHECKING:
     from pipeline.run import JobResult
     from stages.model.pattern import FlatPattern
-    from stages.model.report import StageReport
     from stages.model.sheet import Sheet, SheetLayout
 
 Document = dict[str, object]
-SECONDS_PER_MINUTE = 60.0
-
-
-@dataclass(frozen=True, slots=True)
-class Cuts:
-    """Cuts of a sheet or of a part: length in mm, how many; None: not known."""
-
-    length_mm: float | None
-    pierces: float | None
-
-    def seconds(self, rates: Rates) -> float | None:
-        """Return the time that they take."""
-        if self.length_mm is None or self.pierces is None or rates.speed_mm_min is None or rates.pierce_time_s is None:
-            return None
-        return self.length_mm / rates.speed_mm_min * SECONDS_PER_MINUTE + self.pierces * rates.pierce_time_s
-
-
-UNKNOWN = Cuts(None, None)
+NOBODY: Mapping[str, Cuts] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,46 +98,25 @@ def job_costs(result: "JobResult") -> Costs | None:
     layouts, names = result.nest.product.layouts, file_names(result.parts, result.job)
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
     written = cuts_of_sheets(result.write.report, layouts, names)
-    return costs(layouts, patterns, written, result.job.rates)
-
-
-def cuts_of_sheets(report: "StageReport", layouts: "Sequence[SheetLayout]", names: FileNames) -> list[Cuts]:
-    """Return the cuts of sheets, as their files, or those of the parts on them, were read back."""
-    sheets = report.detail.get("sheets")
-    if isinstance(sheets, list):
-        return [Cuts(one["cut_length_mm"], one["pierces"]) for one in sheets]
-    if names.machine.file_per == "part":
-        return [_together(cuts_of_files(report, names.part_drawings(layout))) for layout in layouts]
-    return cuts_of_files(report, [names.drawing(layout) or "" for layout in layouts])
-
-
-def cuts_of_files(report: "StageReport", paths: Iterable[str]) -> list[Cuts]:
-    """Return the cuts of files as they were read back; not known for files that were not written."""
-    files = report.detail.get("files")
-    read = files if isinstance(files, dict) else {}
-    return [Cuts(read[path]["cut_length_mm"], read[path]["pierces"]) if path in read else UNKNOWN for path in paths]
-
-
-def _together(some: Sequence[Cuts]) -> Cuts:
-    return Cuts(whole(one.length_mm for one in some), whole(one.pierces for one in some))
+    return costs(layouts, patterns, written, result.job.rates, cuts_of_copies(result.write.report))
 
 
 def costs(
-    layouts: "Sequence[SheetLayout]", patterns: "Mapping[str, FlatPattern]", written: Sequence[Cuts], rates: Rates
+    layouts: "Sequence[SheetLayout]",
+    patterns: "Mapping[str, FlatPattern]",
+    written: Sequence[Cuts],
+    rates: Rates,
+    helped: Mapping[str, Cuts] = NOBODY,
 ) -> Costs:
-    """Return the cost of a nest.  patterns: by their names; written: the cuts of each sheet's file."""
+    """Return the cost of a nest.
+
+    patterns: by their names; written: the cuts of each sheet's file; helped: of one copy of a part with helps.
+    """
     sheets = tuple(
         SheetCost(layout, cost(layout, patterns), _credit(layout, rates), cuts)
         for layout, cuts in zip(layouts, written, strict=True)
     )
-    return Costs(sheets, _parts(sheets, patterns), rates)
-
-
-def whole(values: Iterable[float | None]) -> float | None:
-    """Return the sum, None if one of the values is not known."""
-    listed = list(values)
-    known = [value for value in listed if value is not None]
-    return fsum(known) if len(known) == len(listed) else None
+    return Costs(sheets, _parts(sheets, patterns, helped), rates)
 
 
 def _credit(layout: "SheetLayout", rates: Rates) -> float | None:
@@ -171,7 +135,9 @@ def _price_of_area(sheet: "Sheet") -> float | None:
     return sheet.price / (sheet.height_mm * (MM_PER_M if sheet.is_roll else sheet.width_mm))
 
 
-def _parts(sheets: Sequence[SheetCost], patterns: "Mapping[str, FlatPattern]") -> tuple[PartCost, ...]:
+def _parts(
+    sheets: Sequence[SheetCost], patterns: "Mapping[str, FlatPattern]", helped: Mapping[str, Cuts]
+) -> tuple[PartCost, ...]:
     """Return the cost of every part that lies on some sheet, in the order of the patterns."""
     areas = {name: _net_area(pattern) for name, pattern in patterns.items()}
     shares: defaultdict[str, list[Share]] = defaultdict(list)
@@ -180,7 +146,7 @@ def _parts(sheets: Sequence[SheetCost], patterns: "Mapping[str, FlatPattern]") -
         all_of_them = fsum(areas[name] for name in names)
         for name in names:
             shares[name].append((areas[name] / all_of_them, sheet))
-    return tuple(_part(pattern, shares[name]) for name, pattern in patterns.items() if shares[name])
+    return tuple(_part(pattern, shares[name], helped.get(name)) for name, pattern in patterns.items() if shares[name])
 
 
 def _net_area(pattern: "FlatPattern") -> float:
@@ -190,12 +156,12 @@ def _net_area(pattern: "FlatPattern") -> float:
     return fsum(area(contour.path) for contour in (pattern.outer, *pattern.inner))
 
 
-def _part(pattern: "FlatPattern", shares: Sequence[Share]) -> PartCost:
+def _part(pattern: "FlatPattern", shares: Sequence[Share], helped: Cuts | None) -> PartCost:
     """Return the cost of as many copies of a part as there are shares."""
-    from stages.geometry.arcpath import length
-
-    count, contours = len(shares), (pattern.outer, *pattern.inner)
-    cuts = Cuts(count * fsum(length(contour.path) for contour in contours), count * len(contours))
+    count = len(shares)
+    one = figures(pattern, 0.0)
+    long, pierces = (one.cut_length_mm, one.pierces) if helped is None else (helped.length_mm, helped.pierces)
+    cuts = Cuts(count * (long or 0.0), round(count * (pierces or 0.0)))
     return PartCost(
         pattern.part,
         count,

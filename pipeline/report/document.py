@@ -19,7 +19,8 @@ from pipeline.files import FileNames, file_names
 from pipeline.job import Job
 from pipeline.layouts import engine_of
 from pipeline.provenance import environment, provenance
-from pipeline.report.costs import costs_entry, cuts_of_sheets, job_costs
+from pipeline.report.costs import costs_entry, job_costs
+from pipeline.report.cuts import cuts_of_sheets
 from pipeline.report.figures import Figures, figures, total
 from pipeline.report.nestentries import options_entry, stock_entry, wish_entry
 from pipeline.report.stockfigures import stock_figures
@@ -67,7 +68,7 @@ def nest_entry(result: JobResult, measures: Mapping[str, Figures]) -> Document:
         **_basis(result),
         "sheets": [
             {**_sheet(layout, patterns, measures, names), **cuts}
-            for layout, cuts in zip(_layouts(result), _shared_cuts(result, names), strict=True)
+            for layout, cuts in zip(_layouts(result), _cuts_read(result, names), strict=True)
         ],
         **_costs(result),
     }
@@ -149,6 +150,7 @@ def _job(job: Job) -> Document:
             "normalise": tol.normalise,
         },
         "dxf": _drawings(job.machine),
+        "formats": list(job.formats),
         "notes": list(job.notes),
     }
 
@@ -272,12 +274,13 @@ def _sheet(
     }
 
 
-def _shared_cuts(result: JobResult, names: FileNames) -> list[Document]:
-    """Return what cutting each sheet takes where parts share cuts, as its file reads; nothing where they do not."""
-    if not result.job.options.common_line:
+def _cuts_read(result: JobResult, names: FileNames) -> list[Document]:
+    """Return what cutting each sheet takes, as its file reads, where that is not what its parts take by themselves."""
+    if not result.job.options.common_line and not names.machine.helps.any:
         return [{} for _ in _layouts(result)]
     found = cuts_of_sheets(result.write.report, _layouts(result), names)
-    return [{"cut_length_mm": cuts.length_mm, "pierces": cuts.pierces} for cuts in found]
+    whole = [None if cuts.pierces is None else int(cuts.pierces) for cuts in found]
+    return [{"cut_length_mm": cuts.length_mm, "pierces": one} for cuts, one in zip(found, whole, strict=True)]
 
 
 def _placement(placed: "Placement") -> Document:

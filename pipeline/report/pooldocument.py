@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from pipeline import __version__
 from pipeline.files import drawings
-from pipeline.outputs import pictures, stored
+from pipeline.outputs import pictures, stored, with_formats
 from pipeline.pooled import Group, Order, Pool
 from pipeline.provenance import code_digest, environment
 from pipeline.report.costs import cost_lines
@@ -16,7 +16,7 @@ from pipeline.report.document import Document, encoded, figures_entry, measured,
 from pipeline.report.nestentries import wish_entry
 from pipeline.run import JobResult
 from pipeline.sidefiles import side_files
-from pipeline.store import POOL_SCHEMA, REPORT
+from pipeline.store import POOL_SCHEMA
 
 SCHEMA = f"{POOL_SCHEMA}1"
 
@@ -25,12 +25,12 @@ def pool_outputs(pool: Pool) -> tuple[Document, dict[str, bytes]]:
     """Return the report, and every file by its path below the output folder."""
     drawn = {group.name: drawings(result) for group, result in pool.results}
     report = pool_document(pool, drawn)
-    files = {REPORT: encoded(report)}
+    files: dict[str, bytes] = {}
     for group, result in pool.results:
         sides = side_files(result, drawn[group.name])
         every = {**stored(result), **drawn[group.name], **sides, **pictures(result)}
         files |= {f"{group.name}/{path}": content for path, content in every.items()}
-    return report, files
+    return report, with_formats(encoded(report), files)
 
 
 def pool_document(pool: Pool, drawn: Mapping[str, Mapping[str, bytes]]) -> Document:
@@ -67,6 +67,7 @@ def _group(group: Group, result: JobResult, files: Mapping[str, bytes]) -> Docum
         "material": group.material.name,
         "thickness_mm": group.material.thickness_mm,
         "notes": list(group.notes),
+        "formats": list(result.job.formats),
         "parts": [
             {
                 "name": pattern.part,

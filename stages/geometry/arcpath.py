@@ -72,8 +72,10 @@ def piece_count(path: ArcPath) -> int:
 
 def chords(path: ArcPath) -> tuple[Points2, Points2]:
     """Return start and end points of the pieces, each of shape (pieces, 2)."""
-    count = piece_count(path)
-    return path.vertices[:count], np.roll(path.vertices, -1, axis=0)[:count]
+    vertices = path.vertices
+    if path.closed:
+        return vertices, np.concatenate([vertices[1:], vertices[:1]])
+    return vertices[:-1], vertices[1:]
 
 
 def centres(path: ArcPath) -> Points2:

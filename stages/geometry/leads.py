@@ -1,7 +1,8 @@
 """Ways of a cutter onto a path and off it, on the right of the path, where its waste is; and whether they are free.
 
 A straight one stands at an angle to the path.  An arc touches the path, its centre on the right.  A way is free where
-it keeps its distance, in closed form, from all other contours, and touches its own at its end alone.
+it keeps its distance, in closed form, from all other contours, touches its own at its end alone, and comes from its
+waste: in the corner of a hole a round one would come through the part.
 """
 
 from collections.abc import Sequence
@@ -9,10 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 from shapely import STRtree, box
 
-from stages.geometry.arcpath import ArcPath, backwards, bounds
-from stages.geometry.arrays import Vector2
-from stages.geometry.clearance import Pieces, clearance, pieces, point_distances
-from stages.geometry.pathparts import part
+from stages.geometry.arcpath import ArcPath, along, area, backwards
+from stages.geometry.arrays import Array, Mask, Numbers, Points2, Values, Vector2
+from stages.geometry.clearance import Pieces, between, boxes, distances, inside, joined, pieces, point_distances
 
 FREE_SHARE = 0.02
 """Of a way from its end on the contour: an arc through 90 degrees is 5e-4 of its radius from the contour by then."""
@@ -48,40 +48,94 @@ ON_MM = 2e-6
 """A contour that was put together from a file goes through the end of a way as well as this."""
 
 
+NOTHING = between(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
+
+
 class Obstacles:
-    """Contours of one sheet, found by their boxes."""
+    """Contours of one sheet, their pieces found by their boxes.  Many ways are judged at once."""
 
     def __init__(self, paths: Sequence[ArcPath]) -> None:
-        self.some: list[Pieces] = [pieces(path) for path in paths]
-        self.tree = STRtree([box(*bounds(path)) for path in paths])
+        some = [pieces(path) for path in paths]
+        self.some = some
+        self.hollow = [area(path) < 0.0 if path.closed else None for path in paths]
+        self.every = joined([NOTHING, *some])
+        self.owner = np.repeat(np.arange(len(some)), np.array([one.bulge.size for one in some], dtype=np.int64))
+        self.tree = STRtree(box(*boxes(self.every).T))
 
-    def room(self, lead: ArcPath, own: int, within: float) -> float:
-        """Return how near a way comes to any but its own contour, mm; infinite beyond `within`."""
-        low_x, low_y, high_x, high_y = bounds(lead)
-        near = self.tree.query(box(low_x - within, low_y - within, high_x + within, high_y + within)).tolist()
-        way = pieces(lead)
-        return min((clearance(way, self.some[one], within=within) for one in near if one != own), default=np.inf)
+    def rooms(self, ways: Sequence[ArcPath], own: Numbers, within: Values) -> Values:
+        """Return how near each way comes to any but its own contour, mm; infinite beyond its `within`."""
+        some, number = _pieces(ways)
+        one, other = self._near(some, within[number])
+        foreign = self.owner[other] != own[number[one]]
+        found = _least(self._distances(some, one[foreign], other[foreign]), number[one[foreign]], len(ways))
+        return np.where(found <= within, found, np.inf)
 
-    def is_free(self, lead: ArcPath, least: float) -> bool:
-        """Return whether a way is off the contour that its end lies on, and farther than `least` mm from all others."""
-        low_x, low_y, high_x, high_y = bounds(lead)
-        near = self.tree.query(box(low_x - least, low_y - least, high_x + least, high_y + least)).tolist()
-        own = [one for one in near if self._holds(one, lead.vertices[-1])]
-        away = (clearance(pieces(lead), self.some[one], within=2.0 * least) for one in near if one not in own)
-        return all(self.leaves(lead, one) for one in own) and all(one > least for one in away)
+    def leave(self, ways: Sequence[ArcPath], own: Numbers) -> Mask:
+        """Return which ways, each ending on its own contour, are off it everywhere else, on the side of its waste."""
+        some, number = _pieces([_without_end(way) for way in ways])
+        one, other = self._near(some, np.full(number.size, APART_MM))
+        same = self.owner[other] == own[number[one]]
+        left: Mask = _least(self._distances(some, one[same], other[same]), number[one[same]], len(ways)) > APART_MM
+        begins = np.array([way.vertices[0] for way in ways]).reshape(-1, 2)
+        for contour in np.unique(own).tolist():
+            mine = own == contour
+            left[mine] &= self._wasted(begins[mine], contour)
+        return left
 
-    def _holds(self, number: int, point: Vector2) -> bool:
-        """Return whether a contour goes through a point."""
-        some = self.some[number]
-        away = point_distances(np.broadcast_to(point, some.start.shape).copy(), some)
-        return float(away.min()) <= ON_MM
+    def _wasted(self, points: Points2, contour: int) -> Mask:
+        """Return which points are in the waste of a contour: within a hole, which runs clockwise, or off an outline."""
+        hollow = self.hollow[contour]
+        if hollow is None:
+            return np.ones(len(points), dtype=bool)
+        wasted: Mask = inside(points, self.some[contour]) == hollow
+        return wasted
 
-    def leaves(self, lead: ArcPath, own: int) -> bool:
-        """Return whether a way, which ends on its own contour, is off it everywhere else."""
-        return clearance(pieces(_without_end(lead)), self.some[own], within=APART_MM) > APART_MM
+    def are_free(self, ways: Sequence[ArcPath], least: float) -> Mask:
+        """Return which ways are off the contours that their ends lie on, and over `least` mm from all others."""
+        some, number = _pieces(ways)
+        one, other = self._near(some, np.full(number.size, least))
+        way = number[one]
+        ends = np.array([path.vertices[-1] for path in ways]).reshape(-1, 2)
+        contours = self.owner.size + 1
+        contour = way * contours + self.owner[other]
+        own = np.unique(contour[point_distances(ends[way], self.every.take(other)) <= ON_MM])
+        away = ~np.isin(contour, own)
+        free: Mask = _least(self._distances(some, one[away], other[away]), way[away], len(ways)) > least
+        leaving, owner = np.divmod(own, contours)
+        free[leaving[~self.leave([ways[place] for place in leaving], owner)]] = False
+        return free
+
+    def _near(self, some: Pieces, within: Values) -> tuple[Numbers, Numbers]:
+        """Return pairs of a piece of a way and one of a contour whose boxes are not farther apart than `within`."""
+        low_high = boxes(some)
+        low, high = low_high[:, :2] - within[:, None], low_high[:, 2:] + within[:, None]
+        one, other = self.tree.query(box(*low.T, *high.T))
+        return one.astype(np.int64), other.astype(np.int64)
+
+    def _distances(self, some: Pieces, one: Numbers, other: Numbers) -> Values:
+        return distances(some.take(one), self.every.take(other))
 
 
-def _without_end(lead: ArcPath) -> ArcPath:
-    """Return a way of one piece without what is next to the contour."""
-    closed = ArcPath(lead.vertices, lead.bulges, closed=True)
-    return part(closed, 0.0, 1.0 - FREE_SHARE)
+def _pieces(ways: Sequence[ArcPath]) -> tuple[Pieces, Numbers]:
+    """Return the pieces of open paths, and the number of the path that each belongs to."""
+    number = np.repeat(np.arange(len(ways)), np.array([way.bulges.size - 1 for way in ways], dtype=np.int64))
+    if not ways:
+        return NOTHING, number
+    start, end = (np.concatenate([way.vertices[part] for way in ways]) for part in (slice(-1), slice(1, None)))
+    return between(start, end, np.concatenate([way.bulges[:-1] for way in ways])), number
+
+
+def _least(values: Array, number: Numbers, count: int) -> Array:
+    """Return the smallest of the values of each number; infinite where there is none."""
+    found: Array = np.full(count, np.inf)
+    np.minimum.at(found, number, values)
+    return found
+
+
+def _without_end(way: ArcPath) -> ArcPath:
+    """Return an open path without what is next to its end: the end of its last piece."""
+    last, share = way.bulges.size - 2, 1.0 - FREE_SHARE
+    vertices, bulges = way.vertices.copy(), way.bulges.copy()
+    vertices[-1] = along(way, np.array([last]), np.array([share]))[0]
+    bulges[last] = np.tan(np.arctan(bulges[last]) * share)
+    return ArcPath(vertices, bulges, closed=False)

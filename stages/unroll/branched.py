@@ -18,7 +18,6 @@ import numpy as np
 from stages.geometry import arcpath, contours
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.mapped import MappedEdge, backwards
-from stages.geometry.overlap import overlaps
 from stages.geometry.turning import FLAT
 from stages.model.features import RulingMarks
 from stages.model.gathered import Rule, gathered, told
@@ -32,7 +31,7 @@ from stages.unroll.branchfeatures import left_of, on_branches
 from stages.unroll.features import Features
 from stages.unroll.finished import box, finished
 from stages.unroll.forming import Forming, folded, formed
-from stages.unroll.limits import area_findings, overlap, overlap_findings, strain_findings
+from stages.unroll.limits import area_findings, cut_twice, overlap, overlap_findings, strain_findings
 from stages.unroll.marks import ruling_marks
 from stages.unroll.onpart import on_part
 from stages.unroll.rolls import Rolling, scheduled
@@ -89,7 +88,7 @@ def _joined(
         *strain_findings(strain, by_warp, tol),
         *area_findings(outer),
         *overlap_findings(covered, REMEDY),
-        *_cut_twice([outer, *holes]),
+        *cut_twice([outer, *holes]),
         *features.findings,
         *told([(*bend.findings, *roll.findings) for bend, roll in zip(bends, rolls, strict=True)], surface.numbers),
     )
@@ -119,23 +118,6 @@ def _unjoined(gap: Metric, made: Sequence[Branch]) -> Finding:
 def _class(strain: Metric, by_warp: Class) -> str:
     by_strain = class_by_strain(float(strain.value or 0.0))
     return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
-
-
-def _cut_twice(found: Sequence[Contour]) -> tuple[Finding, ...]:
-    """Refuse contours that run along each other: faces that touch in the flat and are not joined."""
-    paths = [one.path for one in found]
-    shared = sum(one.length_mm for one in overlaps(paths, apart=TOUCHING_MM, least=TOUCHING_MM))
-    if not shared:
-        return ()
-    message = (
-        f"in the flat {shared:.4g} mm of the contour run along each other, and would be cut twice: leave a gap between "
-        "the faces there, in the CAD program"
-    )
-    return (Finding("cut-twice", message, True),)
-
-
-TOUCHING_MM = 1e-3
-"""Contours that run nearer to each other than this leave nothing between them."""
 
 
 # Contours and lines

@@ -1,11 +1,17 @@
 """What refuses a pattern: strain beyond the class that the job accepts, area that is covered twice, or none at all."""
 
+from collections.abc import Sequence
+
 from stages.geometry import arcpath
 from stages.geometry.cover import doubled
+from stages.geometry.overlap import overlaps
 from stages.model.pattern import Contour
 from stages.model.report import Finding, Metric
 from stages.model.tolerances import STRAIN_LIMIT, Class, Tolerances, class_by_strain
 from stages.unroll import outline
+
+TOUCHING_MM = 1e-3
+"""Contours that run nearer to each other than this leave nothing between them."""
 
 
 def strain_findings(strain: Metric, by_warp: Class, tol: Tolerances) -> tuple[Finding, ...]:
@@ -60,3 +66,16 @@ def overlap_findings(covered: Metric, remedy: str) -> tuple[Finding, ...]:
         return ()
     message = f"the flat pattern covers {covered.value:.4g} mm2 twice: divide the part {remedy}"
     return (Finding("flat-overlap", message, fatal=True),)
+
+
+def cut_twice(found: Sequence[Contour]) -> tuple[Finding, ...]:
+    """Refuse contours that run along each other: faces that touch in the flat and are not joined."""
+    paths = [one.path for one in found]
+    shared = sum(one.length_mm for one in overlaps(paths, apart=TOUCHING_MM, least=TOUCHING_MM))
+    if not shared:
+        return ()
+    message = (
+        f"in the flat {shared:.4g} mm of the contour run along each other, and would be cut twice: leave a gap between "
+        "the faces there, in the CAD program"
+    )
+    return (Finding("cut-twice", message, True),)

@@ -21,7 +21,7 @@ from stages.write.drawing import Drawing, flat_drawing
 from stages.write.dxf import dxf_text
 from stages.write.faults import faults
 from stages.write.flavours import as_cut
-from stages.write.helpfigures import help_figures
+from stages.write.helpfigures import cuts_of_parts, help_figures
 from stages.write.helps import helped
 from stages.write.kerf import beam_patterns, offset_metrics
 from stages.write.patternfiles import pattern_files
@@ -99,6 +99,7 @@ def judged(
     comparisons: list[Comparison] = []
     figures: dict[str, object] = {}
     sides: dict[str, object] = {}
+    by_part: dict[str, object] = {}
     beside: list[Fit] = []
     entities = 0
     for file, drawing in zip(files, drawings, strict=True):
@@ -116,8 +117,10 @@ def judged(
         figures[file.path] = cut_figures(back)
         if not any(finding.fatal for finding in comparison.findings):
             sides[file.path] = measured_file(back, drawing, machine.of_file(file.path).layers)
+            if drawing.helps.any and drawing.kerf_mm is None:
+                by_part[file.path] = cuts_of_parts(back, drawing)
         entities += sum(entity.count for entity in back.entities)
-    detail: dict[str, object] = {"files": figures, "sides": sides}
+    detail: dict[str, object] = {"files": figures, "sides": sides, **({"parts": by_part} if by_part else {})}
     measured = (*metrics(comparisons, entities), *offset_metrics(beside))
     return StageReport("write", "cut files", measured, tuple(findings), detail)
 

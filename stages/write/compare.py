@@ -131,9 +131,17 @@ def _grown(contours: Sequence[ContourFigures]) -> tuple[Metric, ...]:
 
 def cut_figures(back: ReadFile) -> dict[str, float]:
     """Return the cut length in mm, the number of pierces, and how far the head travels without cutting, in mm."""
-    cut = [entity.path for entity in back.entities if entity.layer.startswith("CUT_") and entity.path is not None]
-    long = float(sum(length(path) for path in cut))
-    return {"cut_length_mm": long, "pierces": float(len(cut)), "travel_mm": _travel(back)}
+    return {**cuts(back.entities), "travel_mm": _travel(back)}
+
+
+def cuts(entities: Sequence[Entity]) -> dict[str, float]:
+    """Return how long the beam cuts, leads too and gaps of tabs not, in mm, and how often it pierces.
+
+    A lead is of one piercing with the cut beside it; each path between two tabs has one of its own.
+    """
+    cut = [entity.path for entity in entities if entity.layer.startswith("CUT_") and entity.path is not None]
+    leads = [entity.path for entity in entities if entity.layer == "LEAD" and entity.path is not None]
+    return {"cut_length_mm": float(sum(length(path) for path in (*cut, *leads))), "pierces": float(len(cut))}
 
 
 def _travel(back: ReadFile) -> float:

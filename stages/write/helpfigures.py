@@ -7,6 +7,8 @@ looked at first.  Gaps of tabs are those of `bridged`: a contour that does not c
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from stages.geometry.arcpath import ArcPath, backwards
 from stages.geometry.arrays import norm
 from stages.geometry.compensation import Fit
@@ -14,6 +16,7 @@ from stages.geometry.leads import APART_MM, Obstacles
 from stages.model.helps import Helps
 from stages.model.report import Finding
 from stages.write.chains import Entity
+from stages.write.compare import cuts
 from stages.write.drawing import Drawing
 from stages.write.helps import LEAD, SHUT_LAYERS
 from stages.write.kerf import CUT_LAYERS, fits
@@ -44,6 +47,21 @@ def help_figures(back: ReadFile, whole: ReadFile, drawing: Drawing) -> HelpFigur
     )
 
 
+def cuts_of_parts(back: ReadFile, drawing: Drawing) -> dict[str, dict[str, float]]:
+    """Return what the cuts of each part of a file are, leads among them, and for how many copies.
+
+    Of a file that holds what was drawn, and in which no cuts are shared.
+    """
+    paths = [entity for entity in back.entities if entity.kind != "TEXT"]
+    rows: dict[str, list[Entity]] = {}
+    copies: dict[str, set[int]] = {}
+    for entity, item in zip(paths, drawing.items, strict=True):
+        if entity.layer == LEAD or entity.layer.startswith("CUT_"):
+            rows.setdefault(item.part, []).append(entity)
+            copies.setdefault(item.part, set()).add(item.copy)
+    return {part: {**cuts(row), "copies": float(len(copies[part]))} for part, row in rows.items()}
+
+
 def _offset_faults(found: Sequence[Fit], drawing: Drawing, helps: Helps) -> Iterator[tuple[str, str]]:
     """Yield that contours are not there to be compared."""
     wanted = sum(item.nominal is not None for item in drawing.items)
@@ -55,14 +73,16 @@ def _lead_faults(entities: Sequence[Entity], whole: Sequence[Entity], helps: Hel
     """Yield the leads that hang in the air, and those that come too near to a contour."""
     obstacles = Obstacles([one.path for one in whole if one.layer in SHUT_LAYERS and one.path is not None])
     least = max(helps.beam_mm / 2.0 - helps.offset_mm, APART_MM)
-    for place, entity in enumerate(entities):
-        if entity.layer != LEAD or entity.path is None:
-            continue
-        way = _ending(entity.path, entities[place - 1 : place], entities[place + 1 : place + 2])
-        if way is None:
-            yield "readback-lead", "a lead does not end on the cut beside it"
-        elif not obstacles.is_free(way, least):
-            yield "readback-lead", "a lead comes too near to a contour"
+    ways = [
+        _ending(entity.path, entities[place - 1 : place], entities[place + 1 : place + 2])
+        for place, entity in enumerate(entities)
+        if entity.layer == LEAD and entity.path is not None
+    ]
+    ending = [way for way in ways if way is not None]
+    for _ in range(len(ways) - len(ending)):
+        yield "readback-lead", "a lead does not end on the cut beside it"
+    for _ in range(int(np.count_nonzero(~obstacles.are_free(ending, least)))):
+        yield "readback-lead", "a lead comes too near to a contour"
 
 
 def _ending(lead: ArcPath, before: Sequence[Entity], after: Sequence[Entity]) -> ArcPath | None:

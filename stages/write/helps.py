@@ -41,31 +41,41 @@ Ways = tuple[ArcPath | None, ArcPath | None]
 
 
 @dataclass(frozen=True, slots=True)
-class Around:
-    """What there is around a contour: what leads keep clear of, its own number among that, the ends of bend lines."""
+class Plan:
+    """How one closed contour is to be cut: open paths between gaps, or whole from one of some places, the best first.
 
-    obstacles: Obstacles
+    own: its number among what leads keep clear of.
+    """
+
     own: int
-    bends: Points2
+    item: Item
+    pieces: tuple[Item, ...] = ()
+    gaps: Gaps | None = None
+    places: tuple[float, ...] = ()
 
 
 def helped(drawing: Drawing, machine: Machine) -> Drawing:
     """Return a drawing with the helps of the machine, and the findings that tell them."""
-    if not machine.helps.any:
+    helps = machine.helps
+    if not helps.any:
         return drawing
     shut = [number for number, item in enumerate(drawing.items) if item.layer in SHUT_LAYERS]
-    obstacles = Obstacles([drawing.items[number].path for number in shut])
-    place = {number: at for at, number in enumerate(shut)}
     bends = _bend_ends(drawing.items)
-    done = []
-    for number, item in enumerate(drawing.items):
-        if item.contour is None or not item.path.closed:
-            done.append(Done((replace(item, nominal=None),), item.part, shared=item.contour is not None))
-            continue
-        one = _cut(item, machine.helps, Around(obstacles, place[number], bends))
-        done.append(replace(one, items=_written(one.items, machine)))
+    plans = {
+        number: _plan(item, own, helps, bends)
+        for own, number in enumerate(shut)
+        if (item := drawing.items[number]).contour is not None and item.path.closed
+    }
+    obstacles = Obstacles([drawing.items[number].path for number in shut])
+    cut = dict(zip(plans, _cut(list(plans.values()), helps, obstacles), strict=True))
+    done = [
+        replace(cut[number], items=_written(cut[number].items, machine))
+        if number in cut
+        else Done((replace(item, nominal=None),), item.part, shared=item.contour is not None)
+        for number, item in enumerate(drawing.items)
+    ]
     items = tuple(item for one in done for item in one.items)
-    return replace(drawing, items=items, helps=machine.helps, told=told(drawing.path, machine.helps, done))
+    return replace(drawing, items=items, helps=helps, told=told(drawing.path, helps, done))
 
 
 def _written(items: Iterable[Item], machine: Machine) -> tuple[Item, ...]:
@@ -79,25 +89,54 @@ def _bend_ends(items: Sequence[Item]) -> Points2:
     return np.concatenate(ends) if ends else np.zeros((0, 2))
 
 
-def _cut(item: Item, helps: Helps, around: Around) -> Done:
-    """Return the paths that one closed contour is cut by, with their leads."""
-    if helps.tabs is None or not _is_held(item, helps.tabs):
-        return _begun(item, helps, around)
-    found = _gaps(item.path, helps.tabs, helps.gap_mm, around.bends)
-    if not found.middles:
-        return replace(_begun(item, helps, around), missing_tabs=found.missing)
-    rests = opened(item.path, found, helps.gap_mm)
-    pieces = [
-        replace(item, path=rest, begun=True, nominal=None if number else item.nominal)
-        for number, rest in enumerate(rests)
-    ]
-    led = [_led(piece, helps, around) for piece in pieces]
+def _plan(item: Item, own: int, helps: Helps, bends: Points2) -> Plan:
+    """Return how a closed contour is to be cut, as far as that does not depend on what is around it."""
+    found = None
+    if helps.tabs is not None and _is_held(item, helps.tabs):
+        found = _gaps(item.path, helps.tabs, helps.gap_mm, bends)
+    if found is not None and found.middles:
+        rests = enumerate(opened(item.path, found, helps.gap_mm))
+        pieces = (
+            replace(item, path=rest, begun=True, nominal=None if number else item.nominal) for number, rest in rests
+        )
+        return Plan(own, item, tuple(pieces), found)
+    if not helps.begins:
+        return Plan(own, item, (), found)
+    return Plan(own, item, (), found, tuple(starts(item.path, helps.start)))
+
+
+def _cut(plans: Sequence[Plan], helps: Helps, obstacles: Obstacles) -> list[Done]:
+    """Return the paths that each contour is cut by, with their leads."""
+    rows = [plan.pieces or (_from(plan, 0),) for plan in plans]
+    every = [(piece, plan.own) for plan, row in zip(plans, rows, strict=True) for piece in row]
+    led = iter(_led(every, helps, obstacles))
+    done = [_together(plan, [next(led) for _ in row]) for plan, row in zip(plans, rows, strict=True)]
+    place = 0
+    while left := [k for k, plan in enumerate(plans) if done[k].blocked and len(plan.places) > place + 1]:
+        place += 1
+        tried = _led([(_from(plans[k], place), plans[k].own) for k in left], helps, obstacles)
+        for k, one in zip(left, tried, strict=True):
+            if one.leads:
+                done[k] = replace(one, missing_tabs=done[k].missing_tabs, moved=True)
+    return done
+
+
+def _from(plan: Plan, number: int) -> Item:
+    """Return a whole contour from one of the places where it may begin."""
+    if not plan.places:
+        return plan.item
+    return replace(plan.item, path=begun(plan.item.path, plan.places[number]), begun=True)
+
+
+def _together(plan: Plan, led: Sequence[Done]) -> Done:
+    """Return the paths of one contour, each with its leads, as one."""
+    found = plan.gaps or Gaps((), 0, 0.0)
     return Done(
         tuple(one for some in led for one in some.items),
-        item.part,
+        plan.item.part,
         tabs=len(found.middles),
         missing_tabs=found.missing,
-        uneven_mm=found.uneven_mm,
+        uneven_mm=found.uneven_mm if found.middles else 0.0,
         leads=sum(some.leads for some in led),
         blocked=sum(some.blocked for some in led),
         room_mm=min(some.room_mm for some in led),
@@ -117,26 +156,17 @@ def _gaps(path: ArcPath, tabs: Tabs, gap: float, bends: Points2) -> Gaps:
     return gaps(path, Wish(wanted or 1, gap, max(CLEAR_MM, gap), 2.0 * LEAST_PIECE_MM), bends)
 
 
-def _begun(item: Item, helps: Helps, around: Around) -> Done:
-    """Return a whole contour from where it may begin on, with its leads; without them where none is free."""
-    if not helps.begins:
-        return Done((item,), item.part)
-    places = starts(item.path, helps.start)
-    if not helps.leads:
-        return Done((replace(item, path=begun(item.path, places[0]), begun=True),), item.part)
-    for place in places:
-        made = _led(replace(item, path=begun(item.path, place), begun=True), helps, around)
-        if made.leads:
-            return replace(made, moved=place != places[0])
-    return _led(replace(item, path=begun(item.path, places[0]), begun=True), helps, around)
+def _led(every: Sequence[tuple[Item, int]], helps: Helps, obstacles: Obstacles) -> list[Done]:
+    """Return paths that are cut, each with the number of its contour among the obstacles, with leads that are free."""
+    ways = [_leads(item.path, helps) if helps.leads else (None, None) for item, _ in every]
+    rooms = _rooms(ways, [own for _, own in every], helps, obstacles)
+    return [_with_leads(item, way, room) for (item, _), way, room in zip(every, ways, rooms, strict=True)]
 
 
-def _led(item: Item, helps: Helps, around: Around) -> Done:
-    """Return a path that is cut with its leads, if they are free."""
-    ways = _leads(item.path, helps)
-    room = _room(ways, helps, around)
+def _with_leads(item: Item, ways: Ways, room: float | None) -> Done:
+    """Return a path with its leads, if they are free."""
     if room is None:
-        return Done((item,), item.part, blocked=int(helps.leads))
+        return Done((item,), item.part, blocked=1)
     onto, away = (() if way is None else (Item(LEAD, item.part, way, name=item.name, copy=item.copy),) for way in ways)
     return Done((*onto, item, *away), item.part, leads=len(onto) + len(away), room_mm=room)
 
@@ -159,12 +189,20 @@ def _lead(lead: Lead | None, at: Vector2, direction: float) -> ArcPath | None:
     return way(at, direction, lead.length_mm, float(np.radians(lead.angle_deg)))
 
 
-def _room(ways: Ways, helps: Helps, around: Around) -> float | None:
-    """Return how near leads come to what is not their contour, mm; None if that is too near."""
+def _rooms(ways: Sequence[Ways], owns: Sequence[int], helps: Helps, obstacles: Obstacles) -> list[float | None]:
+    """Return how near the leads of each path come to what is not their contour, mm; None if that is too near."""
     least = max(helps.beam_mm / 2.0 - helps.offset_mm, APART_MM)
-    onto, away = ways
-    ending = [way for way in (onto, None if away is None else backwards(away)) if way is not None]
-    look = least + max(map(length, ending), default=0.0)
-    nearest = min((around.obstacles.room(way, around.own, look) for way in ending), default=np.inf)
-    free = nearest > least and all(around.obstacles.leaves(way, around.own) for way in ending)
-    return nearest if free else None
+    named = [
+        (number, way)
+        for number, (onto, away) in enumerate(ways)
+        for way in (onto, None if away is None else backwards(away))
+        if way is not None
+    ]
+    number, ending = np.array([one for one, _ in named], dtype=np.int64), [way for _, way in named]
+    look, room = np.zeros(len(ways)), np.full(len(ways), np.inf)
+    np.maximum.at(look, number, np.array([length(way) for way in ending]))
+    own = np.array(owns, dtype=np.int64)[number]
+    np.minimum.at(room, number, obstacles.rooms(ending, own, least + look[number]))
+    free = room > least
+    np.logical_and.at(free, number, obstacles.leave(ending, own))
+    return [float(one) if is_free else None for one, is_free in zip(room, free, strict=True)]

@@ -23,7 +23,7 @@ from stages.geometry.arcpath import ArcPath, chords, directions, piece_count, ra
 from stages.geometry.arrays import Array, norm
 from stages.model.cutfile import Machine
 from stages.write.colours import FULL, on_paper
-from stages.write.drawing import Drawing, Item, Label
+from stages.write.drawing import Drawing, Label
 from stages.write.numerals import numerals
 from stages.write.pdfobjects import CAPITAL_SHARE, LETTER_SHARE, string
 
@@ -51,7 +51,7 @@ def drawn(drawing: Drawing, machine: Machine) -> str:
     layers = layers_of(drawing)
     made = [f"{LINE_MM:g} w 1 j\n"]
     for kind, items in groupby(drawing.items, key=lambda item: item.layer):
-        strokes = "".join(_path(item) for item in items)
+        strokes = "".join(stroke(item.path) for item in items)
         made.append(on_layer(layers.index(kind), f"{_colour(machine, kind)} RG\n{strokes}"))
     for kind, labels in groupby(drawing.labels, key=lambda label: label.layer):
         texts = "".join(text(label) for label in labels)
@@ -89,9 +89,14 @@ def _colour(machine: Machine, kind: str) -> str:
     return " ".join(f"{part / FULL:.4f}" for part in on_paper(machine.layers[kind].colour))
 
 
-def _path(item: Item) -> str:
-    """Return a path, closed if it is."""
-    path = for_cubics(item.path)
+def stroke(path: ArcPath) -> str:
+    """Return a path as a line, closed if it is."""
+    return f"{outline(path)} {'s' if path.closed else 'S'}\n"
+
+
+def outline(path: ArcPath) -> str:
+    """Return a path that is yet to be drawn or filled."""
+    path = for_cubics(path)
     _, ends = chords(path)
     points = _rows(np.concatenate([path.vertices[:1], ends]), 2)
     curves = _rows(np.concatenate([cubics(path).reshape(len(ends), 4), ends], axis=1), 6)
@@ -100,7 +105,7 @@ def _path(item: Item) -> str:
     made = [f"{end} l" if is_line else f"{curve} c" for end, curve, is_line in pieces]
     if path.closed and straight[-1]:
         made.pop()
-    return " ".join([f"{points[0]} m", *made, "s\n" if path.closed else "S\n"])
+    return " ".join([f"{points[0]} m", *made])
 
 
 def _rows(values: Array, width: int) -> list[str]:

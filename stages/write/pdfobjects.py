@@ -55,33 +55,36 @@ def pdf_text(title: str, layers: Sequence[str], box: Box, drawing: str, pages: S
         f"<< /Type /Pages /Count {len(pages)} /Kids [{' '.join(sheets)}] >>",
         "<< /Type /Font /Subtype /Type1 /BaseFont /Courier /Encoding /WinAnsiEncoding >>",
         f"<< /Title {string(title)} /Producer {string('planish')} >>",
-        _stream(drawing, form),
+        stream_of(drawing, form),
         *(f"<< /Type /OCG /Name {string(layer)} >>" for layer in layers),
     ]
     for number, page in enumerate(pages):
-        objects += [_page(page, known, first_page + 2 * number + 1), _stream(_in_mm(page.content))]
-    return _file(objects)
+        objects += [page_of(page, known, first_page + 2 * number + 1), stream_of(content_of(page))]
+    return file_of(objects, ABOUT)
 
 
-def _page(page: Page, known: str, content: int) -> str:
+def page_of(page: Page, known: str, content: int) -> str:
     """Return the object of a page whose content has that number."""
     box = " ".join(f"{side / MM_PER_UNIT:.6f}" for side in (page.width_mm, page.height_mm))
     return f"<< /Type /Page /Parent {TREE} 0 R /MediaBox [0 0 {box}] /Resources {known} /Contents {content} 0 R >>"
 
 
-def _in_mm(content: str) -> str:
-    """Return the content of a page with a unit of 1 mm."""
+def content_of(page: Page) -> str:
+    """Return the operators of a page, their unit made 1 mm."""
     scale = f"{1.0 / MM_PER_UNIT:.12f}"
-    return f"q {scale} 0 0 {scale} 0 0 cm\n{content}Q\n"
+    return f"q {scale} 0 0 {scale} 0 0 cm\n{page.content}Q\n"
 
 
-def _stream(content: str, entries: str = "") -> str:
+def stream_of(content: str, entries: str = "") -> str:
     """Return operators as an object."""
     return f"<< {entries} /Length {len(content)} >>\nstream\n{content}endstream"
 
 
-def _file(objects: Sequence[str]) -> str:
-    """Return the objects, numbered from 1, with the table of where they begin."""
+def file_of(objects: Sequence[str], about: int) -> str:
+    """Return a file of objects, numbered from 1, with the table of where they begin.
+
+    The first is the catalog, the second (`TREE`) the list of pages; `about` is what says of the file what it is.
+    """
     made, places = [HEAD], list[int]()
     at = len(HEAD)
     for number, content in enumerate(objects, 1):
@@ -90,7 +93,7 @@ def _file(objects: Sequence[str]) -> str:
         at += len(made[-1])
     table = "".join(f"{place:010d} 00000 n \n" for place in places)
     count = len(objects) + 1
-    end = f"trailer\n<< /Size {count} /Root {CATALOG} 0 R /Info {ABOUT} 0 R >>\nstartxref\n{at}\n%%EOF\n"
+    end = f"trailer\n<< /Size {count} /Root {CATALOG} 0 R /Info {about} 0 R >>\nstartxref\n{at}\n%%EOF\n"
     return f"{''.join(made)}xref\n0 {count}\n0000000000 65535 f \n{table}{end}"
 
 

@@ -166,12 +166,9 @@ BAD: dict[str, tuple[str, list[str]]] = {
             "job.toml:13:8: nest.seed: 1.5 where a whole number from 0 to 2147483648 belongs",
         ],
     ),
-    "a key of the future": (
-        PLATE + '[process]\nkerf_compensation = "offset"\n',
-        [
-            'job.toml:10:1: process.kerf_compensation: unknown key (one of "type", "kerf", "min_hole", "min_web", '
-            '"speed", "pierce_time")'
-        ],
+    "a misspelt help": (
+        PLATE + '[process]\nkerf_compensate = "offset"\n',
+        ['job.toml:10:1: process.kerf_compensate: unknown key (did you mean "kerf_compensation"?)'],
     ),
     "a dotted key and an inline table": (
         'schema = 1\njob.nam = "x"\npart = [{ name = "a", surface = { kind = "cone", radius0 = 3, hight = 2 } }]\n',

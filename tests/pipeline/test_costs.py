@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from pipeline.rates import Rates
-from pipeline.report.costs import UNKNOWN, Costs, Cuts, cost_line, costs, costs_entry, cuts_of_files
+from pipeline.report.costs import Costs, cost_line, costs, costs_entry
+from pipeline.report.cuts import UNKNOWN, Cuts, cuts_of_copies, cuts_of_files
 from stages.geometry.rigid import Rigid2
 from stages.model.pattern import FlatPattern
 from stages.model.report import StageReport
@@ -92,6 +93,28 @@ def test_cuts_are_those_of_the_files_as_read_back() -> None:
     report = StageReport("write", "x", detail={"files": {"cut/a-1.dxf": {"cut_length_mm": 12.5, "pierces": 2.0}}})
     assert cuts_of_files(report, ["cut/a-1.dxf", "cut/a-2.dxf"]) == [Cuts(12.5, 2.0), UNKNOWN]
     assert cuts_of_files(StageReport("write", "x"), ["cut/a-1.dxf"]) == [UNKNOWN]
+
+
+def helped(files: dict[str, dict[str, Cuts]]) -> StageReport:
+    """Return a report on files whose parts have those cuts, each of two copies."""
+    rows = {
+        path: {
+            part: {"cut_length_mm": cuts.length_mm, "pierces": cuts.pierces, "copies": 2.0}
+            for part, cuts in parts.items()
+        }
+        for path, parts in files.items()
+    }
+    return StageReport("write", "x", detail={"parts": rows})
+
+
+def test_parts_with_leads_and_tabs_take_what_their_paths_in_the_files_take() -> None:
+    report = helped({"cut/a-1.dxf": {"square": Cuts(820.0, 8.0)}, "cut/a-2.dxf": {"square": Cuts(816.0, 8.0)}})
+    one = cuts_of_copies(report)
+    assert one == {"square": Cuts(1636.0 / 4.0, 4.0)}
+    square, holed = costs([layout()], PATTERNS, [CUTS], RATES, one).parts
+    assert square.cuts == Cuts(2.0 * 409.0, 8)
+    assert holed.cuts.pierces == 2, "no helps in the files: its contours"
+    assert cuts_of_copies(StageReport("write", "x")) == {}
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
-"""Finished jobs nested together: groups, traces, refusals, and the command line."""
+"""Finished jobs nested together: groups, traces, and the command line."""
 
 import json
-from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
@@ -10,106 +9,34 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.finished import all_finished, finished
+from pipeline.finished import all_finished
 from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.outputs import outputs
-from pipeline.pooled import Pool, pool, told_apart
+from pipeline.pooled import told_apart
 from pipeline.report.pooldocument import pool_lines, pool_outputs
 from pipeline.run import run_job
 from pipeline.store import write_files
-from pipeline.supply import supply_of
-from stages.errors import BadInputError
 from stages.geometry import arcpath
 from tests.near import assert_near
-from tests.pipeline.jobs import PLATE, STOCK, write_job
-
-STEEL = '[material]\nname = "mild steel"\nthickness = 2\n'
-THIN = STEEL.replace("2", "1.5")
-HOLED = """\
-[[part]]
-name = "holed"
-quantity = 2
-rotations = [0, 90]
-[part.surface]
-kind = "flat"
-outline = { polyline = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]] }
-holes = [{ circle = { center = [10, 5], radius = 3 } }]
-[[part.mark]]
-name = "note"
-kind = "text"
-text = "UP"
-at = [3, 5]
-height = 2
-"""
-PLATES = PLATE + "[nest]\ngap = 1\n"
-JOBS = {
-    "first": PLATES + STEEL + STOCK + '[job]\nname = "first"\ncustomer = "Smith & Co"\n',
-    "second": PLATES + STEEL + '[job]\nname = "second"\n' + HOLED,
-    "again": PLATES + STEEL + '[job]\nname = "first"\n',
-    "thin": PLATES + THIN + STOCK + '[job]\nname = "thin"\n',
-}
-FILE = """\
-schema = 1
-[nest]
-gap = 2
-offcut_credit = 0.5
-[process]
-speed = "2 m"
-pierce_time = 1
-[report]
-formats = ["json"]
-[[stock]]
-id = "big"
-width = 200
-height = 100
-price = 8
-"""
-Folders = Callable[..., list[Path]]
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, bytes]]:
-    """The output files of every job, made once."""
-    folder = tmp_path_factory.mktemp("jobs")
-    names = ("first", "second", "again", "thin")
-    return {name: outputs(run_job(job_of(read(write_job(folder, JOBS[name])))))[1] for name in names}
+from tests.pipeline.jobs import STOCK, write_job
+from tests.pipeline.pooledjobs import (
+    FILE,
+    JOBS,
+    Folders,
+    folders_in,
+    group_of,
+    pooled,
+    problems_of,
+    report_of,
+)
 
 
 @pytest.fixture
-def folders(tmp_path: Path, made: dict[str, dict[str, bytes]], monkeypatch: pytest.MonkeyPatch) -> Folders:
+def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Folders:
     """Return the output folders of some jobs, below the folder where the test runs."""
     monkeypatch.chdir(tmp_path)
-
-    def put(*names: str) -> list[Path]:
-        for name in names:
-            (tmp_path / name).mkdir()
-            write_files(tmp_path / name, made[name])
-        return [Path(name) for name in names]
-
-    return put
-
-
-def pooled(folders: list[Path], stock: str | None = None) -> Pool:
-    if stock is not None:
-        Path("stock.toml").write_text(stock, "utf-8")
-    return pool(all_finished(folders), None if stock is None else supply_of(Path("stock.toml")))
-
-
-def report_of(result: Pool) -> dict[str, object]:
-    report: dict[str, object] = json.loads(pool_outputs(result)[1]["report.json"])
-    return report
-
-
-def group_of(report: dict[str, object], number: int = 0) -> dict[str, object]:
-    group: dict[str, object] = report["groups"][number]  # type: ignore[index]
-    return group
-
-
-def problems_of(call: Callable[[], object]) -> list[str]:
-    with pytest.raises(BadInputError) as caught:
-        call()
-    return [str(problem) for problem in caught.value.problems]
+    return folders_in(tmp_path)
 
 
 def test_every_placement_is_traced_to_its_order(folders: Folders) -> None:
@@ -216,23 +143,6 @@ def test_stock_that_several_groups_count_on_is_noted(folders: Folders) -> None:
     assert [group.notes[1:] for group, _ in pooled(jobs[:1], FILE + "quantity = 3\n").results] == [()]
 
 
-def test_jobs_without_any_stock_are_refused(folders: Folders) -> None:
-    (text,) = problems_of(lambda: pooled(folders("second")))
-    assert text == (
-        'no stock for "mild-steel-2mm" in job "second" '
-        "(give a file of stock with --stock, or [[stock]] in the first of the jobs)"
-    )
-
-
-def test_a_part_with_a_direction_needs_stock_with_one(folders: Folders) -> None:
-    (folder,) = folders("first")
-    report = json.loads((folder / "report.json").read_text("utf-8"))
-    report["parts"][0]["nest"]["axis_deg"] = 0.0
-    (folder / "report.json").write_text(json.dumps(report), "utf-8")
-    (text,) = problems_of(lambda: pooled([folder]))
-    assert '"first/plate" lies along the grain, that of the stock "sheet" is not known' in text
-
-
 def test_a_group_that_does_not_fit_leaves_the_others_to_be_cut(folders: Folders) -> None:
     small = FILE.replace("width = 200", "width = 45").replace("height = 100", "height = 35\nthickness = 2")
     rows = small + FILE.partition("[[stock]]")[2].join(["[[stock]]", ""]).replace("big", "tiny")
@@ -265,61 +175,6 @@ def test_the_same_jobs_give_the_same_files(folders: Folders) -> None:
     assert one == two
     assert [report.pop("run") is not None for report in reports] == [True, True]
     assert reports[0] == reports[1]
-
-
-def spoilt(folder: Path, **changes: object) -> Path:
-    """Return the folder with its report changed."""
-    report = json.loads((folder / "report.json").read_text("utf-8"))
-    (folder / "report.json").write_text(json.dumps({**report, **changes}), "utf-8")
-    return folder
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"status": "rejected"}, "report.json: status: the job is rejected, not made"),
-        ({"status": "no-solution"}, "report.json: status: the job is no-solution, not made"),
-        ({"schema": "planish-pool/1"}, '"planish-pool/1" is not the report of a job'),
-        ({"parts": [{"name": "plate"}]}, "is no report that can be read: Object missing required field"),
-        ({"nest": {"stock": [{"id": "x"}]}}, "is no report that can be read"),
-    ],
-)
-def test_what_is_not_a_finished_job_is_refused(folders: Folders, changes: dict[str, object], message: str) -> None:
-    (folder,) = folders("first")
-    (text,) = problems_of(lambda: finished(spoilt(folder, **changes)))
-    assert message in text
-    assert text.startswith("first/report.json")
-
-
-def test_a_stock_that_is_none_is_refused(folders: Folders) -> None:
-    (folder,) = folders("first")
-    nest = json.loads((folder / "report.json").read_text("utf-8"))["nest"]
-    nest["stock"][0]["outline"] = {"vertices": [[0.0, 0.0]], "bulges": [0.0]}
-    (text,) = problems_of(lambda: finished(spoilt(folder, nest=nest)))
-    assert "nest.stock[0]" in text
-
-
-def test_everything_against_all_jobs_is_told_at_once(folders: Folders) -> None:
-    first, second, thin = folders("first", "second", "thin")
-    drawing = first / "flat" / "plate.dxf"
-    drawing.write_bytes(drawing.read_bytes().replace(b"40.0", b"40.1"))
-    (second / "flat" / "holed.dxf").unlink()
-    spoilt(thin, status="rejected")
-    told = problems_of(lambda: all_finished([first, second, thin, Path("nowhere")]))
-    assert [text.partition(" (")[0] for text in told] == [
-        "first/flat/plate.dxf: the drawing was changed after the job had been made",
-        "second/flat/holed.dxf: the drawing is missing",
-        "thin/report.json: status: the job is rejected, not made",
-        "nowhere/report.json: cannot be read: No such file or directory",
-    ]
-
-
-def test_a_changed_byte_of_a_drawing_is_seen(folders: Folders) -> None:
-    (folder,) = folders("first")
-    assert len(finished(folder).patterns) == 1
-    drawing = folder / "flat" / "plate.dxf"
-    drawing.write_bytes(drawing.read_bytes() + b"\n")
-    assert len(problems_of(lambda: finished(folder))) == 1
 
 
 def planish(*words: str) -> int:

@@ -283,3 +283,40 @@ def test_a_mirrored_copy_keeps_its_leads_on_the_waste() -> None:
     held = sum(inside(ends + OFF_CHORDS, contour).astype(int) for contour in contours)
     assert len(ways) == 6
     assert set(held.tolist()) == {0, 2}
+
+
+# Length of the cuts and pierces
+
+
+def part_figures(helps: Helps, path: str = "cut/stock-1.dxf") -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    """Return the figures of a file with plates of 100 x 60 with two holes, and of its parts by themselves."""
+    one = Nesting((replace(nesting().layouts[0], placements=nesting().layouts[0].placements[:2]),))
+    detail = made(machine(helps), (plate(),), one).report.detail
+    return detail["files"][path], detail.get("parts", {}).get(path, {})  # type: ignore[index, attr-defined, no-any-return]
+
+
+PLAIN_MM = 2.0 * (320.0 + 28.0 * np.pi)
+"""Two plates: an outline of 100 x 60, holes of radius 10 and 4."""
+
+
+@pytest.mark.parametrize(
+    ("helps", "long", "pierces"),
+    [
+        (NONE, PLAIN_MM, 6),
+        (LEADS, PLAIN_MM + 6.0 * (3.0 + np.pi), 6),
+        (TABS, PLAIN_MM - 6.0 * 4.0 * (0.4 + BEAM_MM), 24),
+        (OFFSET, PLAIN_MM + 2.0 * 2.0 * np.pi * (0.1 - 2.0 * 0.1), 6),
+        (replace(LEADS, tabs=TABS.tabs), PLAIN_MM + 24.0 * (3.0 + np.pi - 0.6), 24),
+    ],
+    ids=["none", "line of 3 in, quarter of radius 2 out", "4 tabs", "offset by 0.1", "leads and tabs"],
+)
+def test_what_is_cut_is_counted_with_leads_and_without_gaps(helps: Helps, long: float, pierces: int) -> None:
+    whole, parts = part_figures(helps)
+    assert whole["pierces"] == pierces
+    assert_near(whole["cut_length_mm"], long, bound=1e-7, why="coordinates rounded to 1e-10 mm")
+    if helps is NONE:
+        assert parts == {}
+    else:
+        assert {name: row["copies"] for name, row in parts.items()} == {"plate": 2.0}
+        found = [parts["plate"]["cut_length_mm"], parts["plate"]["pierces"]]
+        assert_near(found, [whole["cut_length_mm"], pierces], bound=1e-9, why="there is no other part")

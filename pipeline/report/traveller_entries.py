@@ -1,0 +1,214 @@
+"""What the traveller reads of a report and of the side files beside drawings, as values; all else is left aside.
+
+Lengths are in mm, areas in mm2, angles in degrees, as they stand there.
+"""
+
+from msgspec import Struct, field
+
+from pipeline.report.nestentries import StockEntry
+from pipeline.sideentries import ContourSide, LayerSide
+from pipeline.sidelines import Radii, RollRow, Thickness
+
+Place = dict[str, float | int | str]
+Pair = tuple[float, float]
+
+
+class MetricEntry(Struct, frozen=True):
+    """A measured number with its limit."""
+
+    name: str
+    value: float | bool | None
+    unit: str
+    evidence: str
+    limit: float | bool | None
+    passed: bool = field(name="pass")
+    where: Place | None = None
+
+
+class FindingEntry(Struct, frozen=True):
+    """Something an engineer must know."""
+
+    code: str
+    message: str
+    fatal: bool
+
+
+class Bend(Struct, frozen=True):
+    """A row of a bend table; pitch_mm: to the next line, at both ends."""
+
+    name: str
+    angle_deg: float
+    side: str
+    radius_mm: Radii
+    facet_error_mm: float
+    fold: bool
+    pitch_mm: Pair | None = None
+
+
+class DetailEntry(Struct, frozen=True):
+    """What forming needs of a stage's detail."""
+
+    thickness: Thickness | None = None
+    bends: tuple[Bend, ...] = ()
+    rolls: tuple[RollRow, ...] = ()
+
+
+class StageEntry(Struct, frozen=True):
+    """A stage of a part, or of the job."""
+
+    status: str
+    metrics: tuple[MetricEntry, ...]
+    findings: tuple[FindingEntry, ...]
+    stage: str = ""
+    detail: DetailEntry = DetailEntry()
+
+
+class HoleEntry(Struct, frozen=True):
+    """A hole in the flat pattern."""
+
+    name: str
+    area: float
+    x: float
+    y: float
+
+
+class MarkEntry(Struct, frozen=True):
+    """A mark with a place."""
+
+    name: str
+    x: float
+    y: float
+
+
+class FlatEntry(Struct, frozen=True):
+    """Figures of a flat pattern; edges: by name, where they have one."""
+
+    area: float
+    outline_length: float
+    width: float
+    height: float
+    corners: tuple[Pair, ...]
+    edges: dict[str, float] | None
+    marks: tuple[MarkEntry, ...]
+    holes: tuple[HoleEntry, ...]
+
+
+class PartEntry(Struct, frozen=True):
+    """A part; reached: its class, null in what was nested from drawings alone."""
+
+    name: str
+    quantity: int
+    reached: str | None = field(name="class")
+    flat: FlatEntry | None
+    mass_kg: float | None
+    cut_length_mm: float | None
+    pierces: int | None
+    stages: tuple[StageEntry, ...]
+
+
+class MaterialEntry(Struct, frozen=True):
+    """The sheet that parts are made of."""
+
+    name: str
+    thickness_mm: float | None
+
+
+class ToleranceEntry(Struct, frozen=True):
+    """What the job allows."""
+
+    accept: str
+    chord_mm: float
+    join_mm: float
+
+
+class ProcessEntry(Struct, frozen=True):
+    """How it is cut."""
+
+    type: str | None
+    kerf_mm: float | None
+    kerf_compensation: str
+
+
+class LayerEntry(Struct, frozen=True):
+    """How drawings call a layer."""
+
+    name: str
+    colour: int
+
+
+class DrawingsEntry(Struct, frozen=True):
+    """How drawings are written."""
+
+    layers: dict[str, LayerEntry]
+
+
+class JobEntry(Struct, frozen=True):
+    """Whose job it is; of what was nested from drawings alone not all is known."""
+
+    name: str
+    material: MaterialEntry
+    customer: str | None = None
+    revision: str | None = None
+    digest: str = ""
+    process: ProcessEntry | None = None
+    tolerance: ToleranceEntry | None = None
+    dxf: DrawingsEntry | None = None
+
+
+class OffcutEntry(Struct, frozen=True):
+    """The rectangle that a sheet leaves in one piece."""
+
+    x: float
+    y: float
+    width_mm: float
+    height_mm: float
+
+
+class PlacementEntry(Struct, frozen=True):
+    """A copy on a sheet."""
+
+    part: str
+    copy: int
+    x: float
+    y: float
+    angle: float
+    mirrored: bool
+
+
+class SheetEntry(Struct, frozen=True):
+    """A nested sheet."""
+
+    stock: str
+    index: int
+    utilisation: float
+    file: str | None
+    kind: str
+    mass_kg: float | None
+    cut_length_mm: float | None
+    pierces: int | None
+    used_length_mm: float | None
+    offcut: OffcutEntry | None
+    placements: tuple[PlacementEntry, ...]
+
+
+class NestEntry(StageEntry, frozen=True, kw_only=True):
+    """The nest of a job."""
+
+    stock: tuple[StockEntry, ...] = ()
+    sheets: tuple[SheetEntry, ...] = ()
+
+
+class ReportEntry(Struct, frozen=True):
+    """A report."""
+
+    status: str
+    job: JobEntry
+    parts: tuple[PartEntry, ...]
+    nest: NestEntry
+
+
+class SideEntry(Struct, frozen=True):
+    """The side file of a drawing: what is cut in it, in the order in which the file has it."""
+
+    contours: tuple[ContourSide, ...]
+    layers: dict[str, LayerSide]

@@ -1,0 +1,42 @@
+"""The scripts of the view of the formed part: fit to stand in a page, with licence, asking nothing of a network."""
+
+import json
+import re
+from importlib.resources import files
+
+import pytest
+
+ASSETS = files("pipeline") / "data" / "report"
+LIBRARY = "three.min.js"
+SCRIPTS = (LIBRARY, "view3d_model.js", "view3d_paint.js", "view3d.js")
+NAMESPACE = "http://www.w3.org/1999/xhtml"
+"""A name of elements, never asked for."""
+ASKING = re.compile(
+    r"\bfetch\(|XMLHttpRequest|WebSocket|importScripts|sendBeacon|EventSource|sourceMappingURL|\beval\("
+)
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_a_script_can_stand_in_a_page_and_asks_for_nothing(name: str) -> None:
+    text = (ASSETS / name).read_text("utf-8")
+    assert "</script" not in text.lower()
+    assert "<!--" not in text
+    assert set(re.findall(r"https?://[^\s\"'`)]+", text)) <= {NAMESPACE}
+    assert not ASKING.findall(text)
+
+
+def test_the_library_carries_its_licence_and_the_version_it_is_built_from() -> None:
+    text, licence = ((ASSETS / name).read_text("utf-8") for name in (LIBRARY, "three.LICENSE.txt"))
+    head = text.partition("*/")[0]
+    assert licence.strip() in head
+    assert "MIT" in licence
+    wanted = json.loads((ASSETS / "viewer" / "package.json").read_text("utf-8"))["devDependencies"]["three"]
+    assert f"three.js {wanted}," in head
+
+
+def test_the_lock_file_names_versions_and_digests_and_no_address() -> None:
+    lock = json.loads((ASSETS / "viewer" / "package-lock.json").read_text("utf-8"))
+    wanted = json.loads((ASSETS / "viewer" / "package.json").read_text("utf-8"))["devDependencies"]
+    packages = {name: entry for name, entry in lock["packages"].items() if name}
+    assert {name: packages[f"node_modules/{name}"]["version"] for name in wanted} == wanted
+    assert all("integrity" in entry and "resolved" not in entry for entry in packages.values())
