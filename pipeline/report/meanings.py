@@ -67,8 +67,8 @@ MEANINGS: dict[str, str] = {
     "regular": "Whether the surface is free of folds and cusps of its own.",
     "turn_deg": "How far the rulings turn in the flat from start to end.",
     # how flat it was laid
-    "length_error": "Largest relative difference of an edge, flat against formed.",
-    "area_error": "Relative difference of the area, flat against formed.",
+    "length_error": "Largest relative difference of a length: edges flat against formed, or cut against exact.",
+    "area_error": "Relative difference of the area: flat against formed, or cut against exact.",
     "joined_area_error": "Relative difference of the area of the parts together, flat against formed.",
     "angle_error_deg": "Largest difference of a corner angle, flat against formed.",
     "metric_error": "Largest relative error of lengths squared in any direction at any place: 0 is no distortion.",
