@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stages.nest.separation.contacts import EITHER
 from stages.nest.separation.laying import lay
-from stages.nest.separation.moving import EITHER
 from stages.nest.separation.problem import Arrays, Problem, Spot, arrays, empty_layout, pose_for
 from stages.nest.separation.separate import copy_places, press_in, seed_all, separate
 from stages.nest.separation.state import NOWHERE, Layout, Pose, Rules, Tables, Weights, Whole

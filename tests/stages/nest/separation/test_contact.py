@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from shapely import Polygon
 
 from stages.geometry.arrays import EPS
-from stages.nest.separation.moving import ALONG, contact
+from stages.nest.separation.contacts import ALONG, contact
 from stages.nest.separation.problem import tips_of
 from stages.nest.separation.separate import seed_all
 from stages.nest.separation.state import RECTANGLE
