@@ -41,14 +41,6 @@ CAPTION_MM = 5.0
 FLAT = 1e-12
 
 
-class Points(Struct, frozen=True):
-    """Points as whole steps from a corner."""
-
-    low: tuple[float, ...]
-    step: float
-    points: str
-
-
 class Numbers(Struct, frozen=True):
     """Whole numbers of so many bytes."""
 
