@@ -45,7 +45,7 @@ def run(
     job: Path, out: Path | None, settings: tuple[str, ...], *, layout: Path | None, as_json: bool, quiet: bool
 ) -> None:
     """Run a job: JOB.toml in, cut files and report out."""
-    from pipeline.outputs import outputs
+    from pipeline.outputs import left_out_lines, outputs
     from pipeline.report.costs import cost_lines
     from pipeline.report.document import encoded
     from pipeline.report.lines import outcome_line
@@ -62,7 +62,7 @@ def run(
         report, files = outputs(result)
         write_files(draft, files)
     if not quiet:
-        for line in (*sheet_lines(result), *cost_lines(result)):
+        for line in (*sheet_lines(result), *cost_lines(result), *left_out_lines(result)):
             message(line)
         message(outcome_line(result, str(target), sum(name.endswith(".dxf") for name in files)))
     if as_json:

@@ -71,10 +71,14 @@ class JobResult:
         return "rejected" if any(step.status == "fail" for step in steps) else "made"
 
     @property
+    def interrupted(self) -> bool:
+        """Return whether someone stopped the search of the nest, and waits."""
+        return any(finding.code == "interrupted" for finding in self.nest.report.findings)
+
+    @property
     def exit_code(self) -> int:
         """Return the exit code of the command line; that of an interruption where the search was interrupted."""
-        interrupted = any(finding.code == "interrupted" for finding in self.nest.report.findings)
-        return EXIT_INTERRUPTED if interrupted and self.status == "made" else EXIT_CODES[self.status]
+        return EXIT_INTERRUPTED if self.interrupted and self.status == "made" else EXIT_CODES[self.status]
 
 
 Listener = Callable[[Step[object]], None]

@@ -61,16 +61,16 @@ FORMATS: dict[str, Format] = {"csv": _csv, "junit": _junit, "html": _html, "trav
 """Formats by their names in the job file; what one needs is imported when it is asked for."""
 
 
-def rendered(made: Made, also: Iterable[str] = ()) -> dict[str, bytes]:
-    """Return the files of the formats that the job asked for, and of others.  json and png are not made here."""
-    return {path: content for files in by_format(made, also).values() for path, content in files.items()}
+def rendered(made: Made, also: Iterable[str] = (), skipped: Iterable[str] = ()) -> dict[str, bytes]:
+    """Return the files of the formats that the job asked for, of others, and without some: json and png are not here."""
+    return {path: content for files in by_format(made, also, skipped).values() for path, content in files.items()}
 
 
-def by_format(made: Made, also: Iterable[str] = ()) -> dict[str, dict[str, bytes]]:
+def by_format(made: Made, also: Iterable[str] = (), skipped: Iterable[str] = ()) -> dict[str, dict[str, bytes]]:
     """Return the same, format by format; one that lacks what it needs beside the report has no files."""
     every: dict[str, dict[str, bytes]] = {}
     for prefix, one in each(made):
-        wanted = {*_asked_for(one.report), *also}
+        wanted = {*_asked_for(one.report), *also} - {*skipped}
         for name in (name for name in FORMATS if name in wanted):
             made_of = FORMATS[name](one)
             every.setdefault(name, {}).update({f"{prefix}{path}": content for path, content in made_of.items()})

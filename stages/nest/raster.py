@@ -58,6 +58,7 @@ LONGER = 1.6
 class Board:
     """A sheet while it is filled: what lies on it, its cells, and the left end known to be the least for each shape.
 
+    pictures: those of the part whose turn it is; of a thousand parts they would fill hundreds of megabytes.
     blocked, rims: for each class of parts, the cells that are not wholly in its region, and the edges of the region.
     """
 
@@ -112,6 +113,7 @@ def _fill(bed: Bed, queue: Sequence[tuple[int, tuple[Turned, ...]]], already: Se
         for _ in range(0 if not turns or _hopeless(board, turns) else count):
             if not _place_one(board, turns):
                 break
+        board.pictures.clear()
     return board.placed
 
 
