@@ -64,8 +64,11 @@ class Shared:
     lock: threading.Lock = field(default_factory=threading.Lock)
     stops: list[Whole] = field(default_factory=list)
 
-    def better(self, layout: Layout, width: float = np.inf) -> None:
-        """Take a layout if it is better, tell it, and stop attempts that can bring no more."""
+    def better(self, layout: Layout, width: float = np.inf, *, alone: bool = False) -> None:
+        """Take a layout if it is better, tell it, and stop attempts that can bring no more.
+
+        alone: each thread goes on from layouts of its own: none is stopped.
+        """
         used = tuple(sorted(set(layout.bin.tolist())))
         with self.lock:
             if (self.wish.costs(used), width) >= (self.wish.costs(self.used), self.width):
@@ -74,7 +77,7 @@ class Shared:
             self.used, self.width = used, width
             self.found += 1
             self.tell(self.layout)
-            for stop in self.stops:
+            for stop in () if alone else self.stops:
                 stop[0] = max(int(stop[0]), OBSOLETE)
 
     def take(self, layout: Layout) -> int:

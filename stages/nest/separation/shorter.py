@@ -14,8 +14,8 @@ import numpy as np
 
 from stages.nest.separation.pool import Pool
 from stages.nest.separation.problem import Arrays
-from stages.nest.separation.separate import close_up
-from stages.nest.separation.sharing import Bench, Shared, Wish, parted, swap_large, within
+from stages.nest.separation.separate import close_up, copy_places
+from stages.nest.separation.sharing import Bench, Shared, Wish, parted, same_again, swap_large, within
 from stages.nest.separation.state import Layout
 
 EFFORT = (20, 12, 8)
@@ -41,26 +41,43 @@ def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
     if bin_ < 0:
         return
     given = within(bench.given, shared.used)
-    begin, step, seen = monotonic(), FIRST_STEP, -1
+    begin = monotonic()
+    turn = begin + POLISH * (wish.end - begin)
+    explore(bench, given, shared, bin_, turn)
+    polish(bench, given, shared, bin_, (turn, wish.end))
+
+
+def explore(bench: Bench, given: Arrays, shared: Shared, bin_: int, end: float) -> None:
+    """Shrink the width by shares that a layout which is not disturbed cannot bring, each thread by itself."""
+    own, width, step = same_again(shared.layout), shared.width, FIRST_STEP
     pool = Pool()
-    while (now := monotonic()) < wish.end:
-        share = (now - begin) / max(wish.end - begin, 1e-9)
-        polishing = share >= POLISH
-        if polishing:
-            step = POLISH_STEP * (POLISH_LEAST / POLISH_STEP) ** ((share - POLISH) / (1.0 - POLISH))
-        found = shared.take(bench.layout)
-        if found != seen:
-            pool.clear()
-        elif not polishing:
-            disturb(bench, given, pool)
-        seen = found
-        narrow(bench, given, bin_, shared.width * (1.0 - step))
-        left = parted(bench, given, SHORT_PATIENCE if polishing else PATIENCE, EFFORT, STRIKES)
+    shared.take(bench.layout)
+    while monotonic() < end:
+        narrow(bench, given, bin_, width * (1.0 - step))
+        left = parted(bench, given, PATIENCE, EFFORT, STRIKES)
         if left == 0.0:
-            shared.better(bench.best, used_width(bench.best, bin_))
+            copy_places(bench.best, own)
+            width = used_width(own, bin_)
+            shared.better(own, width, alone=True)
+            pool.clear()
+            copy_places(own, bench.layout)
         elif bench.stop[0] == 0:
             step = max(step / 2.0, LEAST_STEP)
             pool.keep(left, bench.best)
+            copy_places(own, bench.layout)
+            disturb(bench, given, pool)
+
+
+def polish(bench: Bench, given: Arrays, shared: Shared, bin_: int, span: tuple[float, float]) -> None:
+    """Shrink the best width of all threads by shares that fall from the first to the second moment of a span."""
+    begin, end = span
+    while (now := monotonic()) < end:
+        share = max(now - begin, 0.0) / max(end - begin, 1e-9)
+        step = POLISH_STEP * (POLISH_LEAST / POLISH_STEP) ** share
+        shared.take(bench.layout)
+        narrow(bench, given, bin_, shared.width * (1.0 - step))
+        if parted(bench, given, SHORT_PATIENCE, EFFORT, STRIKES) == 0.0:
+            shared.better(bench.best, used_width(bench.best, bin_))
 
 
 def narrow(bench: Bench, given: Arrays, bin_: int, width: float) -> None:
