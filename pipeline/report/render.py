@@ -62,7 +62,7 @@ FORMATS: dict[str, Format] = {"csv": _csv, "junit": _junit, "html": _html, "trav
 
 
 def rendered(made: Made, also: Iterable[str] = (), skipped: Iterable[str] = ()) -> dict[str, bytes]:
-    """Return the files of the formats that the job asked for, of others, and without some: json and png are not here."""
+    """Return the files of the formats that the job asked for, of others, without those skipped; no json, no png."""
     return {path: content for files in by_format(made, also, skipped).values() for path, content in files.items()}
 
 

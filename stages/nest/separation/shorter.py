@@ -2,8 +2,8 @@
 
 Its width shrinks by a share that halves after each failure down to a small one, and what lies beyond a random line
 across it moves back by as much.  After a failure the next attempt starts from a layout that did not quite work out, one
-of the least bad ones more often, with two large items changed about.  In the last part of the time only small shares
-are tried, from the best layout itself.
+of the least bad ones more often, with two large items changed about; each thread by itself, so that they look at
+different places.  In the last part of the time only small shares are tried, by all threads from the best layout.
 
 Source: the two phases, the random line and the choice of the next layout follow those of `touching`.
 """
