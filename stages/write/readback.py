@@ -10,6 +10,7 @@ neither (what does not belong into a cut file) by kind and layer.
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from io import StringIO
 
 import numpy as np
@@ -49,11 +50,22 @@ class ReadFile:
     version: str = ""
 
 
+KEPT = 8
+"""Texts whose content is kept: what compares a file with its drawing and what certifies it ask one after the other."""
+
+
 def read(text: str, layers: Mapping[str, Layer] = PROFILES["planish"]) -> ReadFile:
     """Return the content of a DXF text; where it cannot be read, only complaints.
 
     layers: how the file calls them.
     """
+    return _read(text, tuple(layers.items()))
+
+
+@lru_cache(maxsize=KEPT)
+def _read(text: str, named: tuple[tuple[str, Layer], ...]) -> ReadFile:
+    """Return the content of a text; it is not to be changed."""
+    layers = dict(named)
     try:
         document = read_dxf(StringIO(text))
         entities = chained([_meant(_entity(entity), layers) for entity in drawn(document, layers)])
