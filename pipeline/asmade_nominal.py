@@ -11,10 +11,11 @@ Nominal values are rounded to `DIGITS` decimals, a nanometre: what a quadrature 
 a value on its limit is on its limit.
 
 Tolerances, where the sheet gives none: ISO 2768-1 [1]_, class m, for lengths and radii by their size, for angles by the
-shorter flange.  Beyond its table there is none, nor for the
-thickness, which is the mill's.
+shorter flange.  Its wider table for broken edges is not for the radii of bends.  Beyond its tables there is none, nor
+for the thickness, which is the mill's.
 
-.. [1] ISO 2768-1:1989, "General tolerances", tables 1 and 3.
+.. [1] ISO 2768-1:1989, "General tolerances", tables 1 and 3; the values were compared with reprints of the tables of
+   DIN ISO 2768-1:1991, which is the same standard.
 """
 
 from collections.abc import Iterator, Sequence

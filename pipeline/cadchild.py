@@ -1,32 +1,26 @@
-"""The child process that reads one CAD file: `python -c ... FILE SORT`, the faces pickled on stdout.
+"""The child process that reads one CAD file: `python -c ... FILE SORT`, the faces on stdout as `cadwire` writes them.
 
 Whatever the libraries print goes nowhere; what they raise is told as a text.  If they crash, only this process ends.
 """
 
 import os
-import pickle
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from pipeline.cadwire import Unreadable, written
+from pipeline.orphans import die_with_the_one_told
 from stages.model.cadface import CadBody
-
-
-@dataclass(frozen=True, slots=True)
-class Unreadable:
-    """Why a file cannot be read."""
-
-    message: str
 
 
 def main() -> None:
     """Read the file and write what it holds."""
+    die_with_the_one_told()
     file, sort = sys.argv[1:]
     answer, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.dup2(nowhere, 2)
     with os.fdopen(answer, "wb") as pipe:
-        pipe.write(pickle.dumps(read(file, sort)))
+        pipe.write(written(read(file, sort)))
         pipe.flush()
         # the libraries' own clean-up takes time and may crash
         os._exit(0)

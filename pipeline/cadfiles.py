@@ -5,22 +5,26 @@ takes a second, they print to stdout, and a broken file may crash them, which he
 """
 
 import os
-import pickle
 import re
 import subprocess
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from hashlib import sha256
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from pipeline.cadchild import Unreadable
+from pipeline import cadwire
+from pipeline.cadwire import Unreadable
 from pipeline.decode import ResolveError
+from pipeline.orphans import PARENT
+from pipeline.plaintext import plain
+from pipeline.reach import Reach
 from stages.model.cadface import CadBody, CadFace
 from stages.model.faces import FaceFile
 
@@ -45,20 +49,21 @@ class CadSource:
     digest: str
 
 
-def cad_source(folder: Path, table: FaceFile) -> CadSource:
+def cad_source(reach: Reach, table: FaceFile) -> CadSource:
     """Return the faces that a part asks for; ResolveError where the file or the face is not there."""
-    content, file = _content(folder, table.file)
-    sort = SORTS[file.suffix.lower()]
+    sort = _sort(table.file)
+    content = _content(reach, table.file)
+    digest = sha256(content).hexdigest()
     if find_spec(PACKAGES[sort]) is None:
         message = f"{WORDS[sort]} files are read by a library that is not installed"
         raise ResolveError("file", message, "pip install planish[cad]")
-    body = _body(str(file), sort, sha256(content).hexdigest())
+    body = _body(CadText(digest, sort, content))
     if isinstance(body, CadBody):
         body = _whole(body, content, sort)
     if isinstance(body, Unreadable):
         hint = "export it again, or as a mesh"
         raise ResolveError("file", f"{table.file} is no {WORDS[sort]} file that can be read: {body.message}", hint)
-    return CadSource(chosen(body, table), sha256(content).hexdigest())
+    return CadSource(chosen(body, table), digest)
 
 
 def _whole(body: CadBody, content: bytes, sort: str) -> CadBody | Unreadable:
@@ -93,32 +98,46 @@ SECTION = 72
 """Column of the letter of a line's section in IGES: S, G, D, P, T."""
 
 
-def _content(folder: Path, name: str) -> tuple[bytes, Path]:
-    """Return the bytes of a CAD file and where it lies."""
-    sample = name.startswith(SAMPLE)
-    file = Path(str(files("pipeline").joinpath("data", "cad", name[len(SAMPLE) :]))) if sample else folder / name
-    if file.suffix.lower() not in SORTS:
+def _sort(name: str) -> str:
+    """Return what sort of CAD file it is by its name."""
+    ending = Path(name).suffix.lower()
+    if ending not in SORTS:
         raise ResolveError("file", f"{name} is no CAD file by its name", f"files read here: {', '.join(SORTS)}")
-    try:
-        if file.stat().st_size > LARGEST_FILE:
-            hint = "export only the part that is cut"
-            raise ResolveError("file", f"{name} is larger than {LARGEST_FILE // 10**6} MB", hint)
-        return file.read_bytes(), file
-    except FileNotFoundError:
-        raise ResolveError("file", f"there is no file {name}", f"looked for {file}") from None
-    except OSError as error:
-        raise ResolveError("file", f"{name} cannot be read: {error.strerror}", "") from None
+    return SORTS[ending]
+
+
+def _content(reach: Reach, name: str) -> bytes:
+    """Return the bytes of a CAD file."""
+    if name.startswith(SAMPLE):
+        inside = Path(str(files("pipeline").joinpath("data", "cad")))
+        return Reach(inside).content(Path(name[len(SAMPLE) :]).name, LARGEST_FILE, "")
+    return reach.content(name, LARGEST_FILE, "export only the part that is cut")
+
+
+@dataclass(frozen=True, slots=True)
+class CadText:
+    """The bytes of a CAD file, told apart by their sha256."""
+
+    digest: str
+    sort: str
+    content: bytes = field(compare=False, repr=False)
 
 
 @lru_cache(maxsize=4)
-def _body(file: str, sort: str, _digest: str) -> CadBody | Unreadable:
-    """Return the faces of a file, read once for all the parts that are made of them."""
-    return read_guarded((sys.executable, "-P", "-c", CHILD, file, sort), TIME_LIMIT_S)
+def _body(text: CadText) -> CadBody | Unreadable:
+    """Return the faces of a file, read once for all the parts that are made of them.
+
+    The library reads a copy in a folder that no one else may enter: what it sees are the bytes that were hashed.
+    """
+    with TemporaryDirectory(prefix="planish-") as folder:
+        file = Path(folder, f"copy.{text.sort}")
+        file.write_bytes(text.content)
+        return read_guarded((sys.executable, "-P", "-c", CHILD, str(file), text.sort), TIME_LIMIT_S)
 
 
 def read_guarded(command: Sequence[str], seconds: float) -> CadBody | Unreadable:
     """Return what a child process makes of a file; a child that crashes, hangs or says nothing cannot read it."""
-    surroundings = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    surroundings = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path), PARENT: str(os.getpid())}
     try:
         child = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=seconds, env=surroundings
@@ -127,10 +146,10 @@ def read_guarded(command: Sequence[str], seconds: float) -> CadBody | Unreadable
         return Unreadable(f"reading it takes longer than {seconds:g} s")
     if child.returncode or not child.stdout:
         return Unreadable("the reader crashed over it")
-    read = pickle.loads(child.stdout)
-    if not isinstance(read, CadBody | Unreadable):
-        raise TypeError(f"the reader answered with a {type(read).__name__}")
-    return read
+    try:
+        return cadwire.read(child.stdout)
+    except cadwire.WireError:
+        return Unreadable("the reader answered with something else than faces")
 
 
 def chosen(body: CadBody, table: FaceFile) -> CadBody:
@@ -157,7 +176,7 @@ def listing(faces: Sequence[CadFace]) -> str:
 
 
 def _listed(face: CadFace) -> str:
-    name = f' "{face.name}"' if face.name else ""
+    name = f' "{plain(face.name)}"' if face.name else ""
     if face.area_mm2 is not None:
         return f"{face.index}{name} {face.sort} {face.area_mm2:.6g} mm2"
     v = np.linspace(0.0, 1.0, 9)

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 import click
 
 from pipeline import __version__
+from pipeline.lazy import Commands
+from pipeline.loading import laid, load
+from pipeline.plaintext import plain_lines
 
 if TYPE_CHECKING:
-    from pipeline.job import Job
     from pipeline.run import Step
     from stages.errors import Problem
 
@@ -25,10 +27,14 @@ TRACEBACK = "PLANISH_TRACEBACK"
 
 JobPath = click.argument("job", type=click.Path(path_type=Path), metavar="JOB.toml")
 Settings = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="part[0].surface.k0=1, say")
+Allow = click.option(
+    "--allow", multiple=True, metavar="FOLDER", type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="What a job names may lie in FOLDER too, not only beside the job.",
+)  # fmt: skip
 AsJson = click.option("--json", "as_json", is_flag=True, help="Write one JSON document to stdout.")
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, message="%(prog)s %(version)s")
 def cli() -> None:
     """Developable surfaces -> verified, unrolled, nested, cut."""
@@ -38,11 +44,21 @@ def cli() -> None:
 @JobPath
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Output folder; out/<job name> if absent.")
 @Settings
+@Allow
 @click.option("--layout", type=click.Path(path_type=Path), metavar="FILE", help="Lay parts as layout.json says.")
+@click.option("--workers", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes for the parts.")
 @AsJson
 @click.option("--quiet", is_flag=True, help="No messages but errors.")
 def run(
-    job: Path, out: Path | None, settings: tuple[str, ...], *, layout: Path | None, as_json: bool, quiet: bool
+    job: Path,
+    out: Path | None,
+    settings: tuple[str, ...],
+    allow: tuple[Path, ...],
+    *,
+    layout: Path | None,
+    workers: int,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Run a job: JOB.toml in, cut files and report out."""
     from pipeline.outputs import left_out_lines, outputs
@@ -50,21 +66,21 @@ def run(
     from pipeline.report.document import encoded
     from pipeline.report.lines import outcome_line
     from pipeline.report.stockfigures import sheet_lines
-    from pipeline.run import run_job, silent
+    from pipeline.run import run_job, silent, spread
     from pipeline.store import replacement, safe_name, write_files
 
-    ready = load(job, settings, quiet=quiet)
+    ready = load(job, settings, allow, message, quiet=quiet)
     if layout is not None:
-        ready = laid(ready, layout, quiet=quiet)
+        ready = laid(ready, layout, message, quiet=quiet)
     target = out or Path("out") / safe_name(ready.name)
     with replacement(target, keep=[job] if layout is None else [job, layout]) as draft:
-        result = run_job(ready, silent if quiet else tell)
+        result = run_job(ready, silent if quiet else tell, spread(workers))
         report, files = outputs(result)
         write_files(draft, files)
     if not quiet:
         for line in (*sheet_lines(result), *cost_lines(result), *left_out_lines(result)):
             message(line)
-        message(outcome_line(result, str(target), sum(name.endswith(".dxf") for name in files)))
+        message(outcome_line(result, str(target), files))
     if as_json:
         click.echo(encoded(report), nl=False)
     sys.exit(result.exit_code)
@@ -76,9 +92,12 @@ def run(
 @click.option(
     "--stock", type=click.Path(path_type=Path), metavar="FILE.toml", help="Stock; that of the first job if absent."
 )
+@Allow
 @AsJson
 @click.option("--quiet", is_flag=True, help="No messages but errors.")
-def nest(folders: tuple[Path, ...], out: Path, stock: Path | None, *, as_json: bool, quiet: bool) -> None:
+def nest(
+    folders: tuple[Path, ...], out: Path, stock: Path | None, *, allow: tuple[Path, ...], as_json: bool, quiet: bool
+) -> None:
     """Nest the parts of finished jobs together, by material and thickness."""
     from pipeline.finished import all_finished
     from pipeline.pooled import pool
@@ -88,7 +107,7 @@ def nest(folders: tuple[Path, ...], out: Path, stock: Path | None, *, as_json: b
     from pipeline.store import REPORT, replacement, write_files
     from pipeline.supply import supply_of
 
-    supply = None if stock is None else supply_of(stock)
+    supply = None if stock is None else supply_of(stock, allow)
     jobs = all_finished(folders)
     keep = [folder / REPORT for folder in folders] + ([] if stock is None else [stock])
     with replacement(out, keep=keep) as draft:
@@ -105,10 +124,11 @@ def nest(folders: tuple[Path, ...], out: Path, stock: Path | None, *, as_json: b
 @cli.command()
 @JobPath
 @Settings
+@Allow
 @AsJson
-def check(job: Path, settings: tuple[str, ...], as_json: bool) -> None:
+def check(job: Path, settings: tuple[str, ...], allow: tuple[Path, ...], as_json: bool) -> None:
     """Read and validate a job file, and do nothing else."""
-    ready = load(job, settings, quiet=as_json)
+    ready = load(job, settings, allow, message, quiet=as_json)
     if as_json:
         click.echo('{"errors": []}')
     else:
@@ -122,6 +142,7 @@ def check(job: Path, settings: tuple[str, ...], as_json: bool) -> None:
 @click.option("--template", "empty", is_flag=True, help="Write an empty sheet of measurements to stdout.")
 @click.option("--job", type=click.Path(path_type=Path), metavar="JOB.toml", help="Needed for points: the job of OUT.")
 @Settings
+@Allow
 @click.option("-o", "target", type=click.Path(path_type=Path), help="compare.json beside MEASURED.csv if absent.")
 @AsJson
 def compare(
@@ -131,6 +152,7 @@ def compare(
     empty: bool,
     job: Path | None,
     settings: tuple[str, ...],
+    allow: tuple[Path, ...],
     target: Path | None,
     as_json: bool,
 ) -> None:
@@ -146,7 +168,7 @@ def compare(
     if measured is None:
         click.echo(template(nominal_of(out)).encode(), nl=False)
         return
-    made = comparison(out, measured, None if job is None else load(job, settings, quiet=True))
+    made = comparison(out, measured, None if job is None else load(job, settings, allow, message, quiet=True))
     content = encoded(compare_document(made))
     keep(target or measured.with_name(FILE), content)
     click.echo(content if as_json else "\n".join(compare_lines(made)), nl=not as_json)
@@ -213,29 +235,6 @@ def materials() -> None:
     click.echo(f"{sheets.listing()}\n\nCutting processes\n{processes.listing()}")
 
 
-def load(job: Path, settings: Sequence[str], *, quiet: bool) -> "Job":
-    """Return the job of a file after telling what was assumed."""
-    from pipeline.job import job_of
-    from pipeline.jobfile import read
-    from pipeline.sources import silent
-
-    told = message if sys.stderr.isatty() and not quiet else silent
-    ready = job_of(read(job, settings, told))
-    for note in () if quiet else ready.notes:
-        message(f"note: {note}")
-    return ready
-
-
-def laid(job: "Job", layout: Path, *, quiet: bool) -> "Job":
-    """Return the job placed by a layout file after telling how much of it stays."""
-    from pipeline.layouts import summary, with_layout
-
-    ready = with_layout(job, layout)
-    if ready.layout is not None and not quiet:
-        message(f"note: {summary(ready.layout)}")
-    return ready
-
-
 def tell(step: "Step[object]") -> None:
     """Say how a stage went."""
     from pipeline.report.lines import step_line, trouble_lines
@@ -247,8 +246,8 @@ def tell(step: "Step[object]") -> None:
 
 def message(text: str, colour: str | None = None) -> None:
     """Write a line to stderr; in colour only on a terminal and unless NO_COLOR is set."""
-    plain = bool(os.environ.get("NO_COLOR")) or not sys.stderr.isatty()
-    click.echo(text if plain or colour is None else click.style(text, fg=colour), err=True, color=not plain)
+    shown, bare = plain_lines(text), bool(os.environ.get("NO_COLOR")) or not sys.stderr.isatty()
+    click.echo(shown if bare or colour is None else click.style(shown, fg=colour), err=True, color=not bare)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -288,12 +287,9 @@ def failed(error: Exception, *, as_json: bool) -> int:
 def _complain(problems: "Sequence[Problem]", *, as_json: bool) -> int:
     """Write problems, one a line or as a document."""
     if as_json:
-        import json
-        from dataclasses import asdict
+        from pipeline.complaints import complaints
 
-        order = ("file", "line", "column", "path", "message", "hint")
-        rows = [asdict(problem) for problem in problems]
-        click.echo(json.dumps({"errors": [{key: row[key] for key in order} for row in rows]}, indent=1))
+        click.echo(complaints(problems))
     for problem in problems:
         message(str(problem), colour="red")
     return EXIT_USAGE

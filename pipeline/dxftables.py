@@ -12,6 +12,7 @@ from typing import Annotated
 from msgspec import Meta
 from msgspec.structs import asdict
 
+from stages.model.caps import MOST_ROWS
 from stages.model.curves import Table, Trouble
 from stages.model.cutfile import (
     FIELD,
@@ -99,7 +100,7 @@ class DxfTable(Table, frozen=True, kw_only=True):
     text: Lettering = "TEXT"
     one_file_per: FilePer = "sheet"
     name: Annotated[str, Meta(min_length=1, max_length=80)] | None = None
-    also: tuple[Picture, ...] = ()
+    also: Annotated[tuple[Picture, ...], Meta(max_length=MOST_ROWS)] = ()
     paper: Paper = "fit"
     size: Annotated[str, Meta(min_length=1, max_length=12)] | None = None
 

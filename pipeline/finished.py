@@ -2,23 +2,23 @@
 
 `report.json` says what the parts are and how they want to lie; `flat/<part>.dxf` holds their contours, marks and texts,
 which come back as they were written: lines and arcs to half the last decimal of a drawing, 5e-11 mm.  A file that is
-not the one the report lists, by its sha256, is refused.  Names of marks and holes are not in drawings and are lost.
+not the one the report lists, by its sha256, is refused.  What a drawing does not say, names, notches and what
+holes are for, comes from the side file beside it (`recalled`); parts that have none are told.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import msgspec
-from msgspec import Meta, Struct, field
 
+from pipeline.finishedentries import JobEntry, MaterialEntry, PartEntry, ReportEntry, StatusEntry
 from pipeline.rates import Rates
-from pipeline.report.nestentries import StockEntry, WishEntry, sheet_of
+from pipeline.report.nestentries import sheet_of
 from pipeline.store import REPORT, digest, safe_names
 from stages.errors import BadInputError, Problem
-from stages.model.cutfile import FilePer, Flavour, Layer, Lettering, Machine, Paper, Picture, Side, Style, Version
-from stages.model.helps import Helps
+from stages.model.cutfile import Machine
 from stages.model.sheet import NestOptions, Sheet
 
 if TYPE_CHECKING:
@@ -28,126 +28,12 @@ SCHEMA = "planish-report/1"
 RUN_AGAIN = "run the job again with this version"
 
 
-class MaterialEntry(Struct, frozen=True):
-    """The sheet of a job."""
-
-    name: str
-    thickness_mm: float | None
-    density_kg_m3: float | None
-
-
-class ToleranceEntry(Struct, frozen=True):
-    """What the contours were held to."""
-
-    chord_mm: float
-
-
-class LayerEntry(Struct, frozen=True):
-    """What its drawings call a layer."""
-
-    name: str
-    colour: int
-
-
-class DxfEntry(Struct, frozen=True):
-    """How its drawings were written."""
-
-    flavour: Flavour
-    version: Version
-    layers: dict[str, LayerEntry]
-    text: Lettering
-    one_file_per: FilePer
-    name: str
-    also: tuple[Picture, ...] = ()
-    paper: Paper = "fit"
-    side: Side = "either"
-    size: str = Style().size
-    helps: Helps = field(default_factory=Helps)
-
-    def machine(self) -> Machine:
-        """Return what drawings of that sort are like."""
-        layers = {meaning: Layer(layer.name, layer.colour) for meaning, layer in self.layers.items()}
-        how = Machine(self.flavour, self.version, layers, side=self.side, style=Style(size=self.size), helps=self.helps)
-        named = replace(how, text=self.text, file_per=self.one_file_per, file_name=self.name)
-        return replace(named, also=self.also, paper=self.paper)
-
-
-class JobEntry(Struct, frozen=True):
-    """A job."""
-
-    name: str
-    customer: str | None
-    revision: str | None
-    digest: str
-    material: MaterialEntry
-    tolerance: ToleranceEntry
-    dxf: DxfEntry
-    formats: tuple[str, ...] = ("json", "png")
-
-
-class FlatEntry(Struct, frozen=True):
-    """Figures of a flat pattern."""
-
-    corners: Annotated[tuple[tuple[float, float], ...], Meta(min_length=4, max_length=4)]
-
-
-class PartEntry(Struct, frozen=True):
-    """A part that passed."""
-
-    name: str
-    quantity: Annotated[int, Meta(ge=1)]
-    flat: FlatEntry
-    nest: WishEntry
-
-
-class CostEntry(Struct, frozen=True):
-    """What its cost was reckoned with."""
-
-    rates: Rates = field(default_factory=Rates)
-
-
-class NestEntry(Struct, frozen=True):
-    """Stock and wishes; absent without stock."""
-
-    options: NestOptions = field(default_factory=NestOptions)
-    stock: tuple[StockEntry, ...] = ()
-    cost: CostEntry = CostEntry()
-
-
-class FileEntry(Struct, frozen=True):
-    """A drawing of the job."""
-
-    path: str
-    sha256: str
-
-
-class WriteEntry(Struct, frozen=True):
-    """The drawings of a job."""
-
-    files: tuple[FileEntry, ...]
-
-
-class StatusEntry(Struct, frozen=True):
-    """What became of a job; read before all else of a report."""
-
-    schema: str
-    status: str
-
-
-class ReportEntry(Struct, frozen=True):
-    """What is needed of a report."""
-
-    job: JobEntry
-    parts: tuple[PartEntry, ...]
-    nest: NestEntry
-    write: WriteEntry
-
-
 @dataclass(frozen=True, slots=True)
 class Finished:
     """A finished job: its patterns by the names of its parts, and what they were to be cut from.
 
-    paths: of the drawings of the parts below the folder, by their names.
+    paths: of the drawings of the parts below the folder, by their names.  unrecalled: parts without a side file of
+        their drawing, of which nothing is known but what that shows.
     """
 
     folder: Path
@@ -159,6 +45,7 @@ class Finished:
     rates: Rates
     paths: dict[str, str]
     report_digest: str
+    unrecalled: tuple[str, ...] = ()
 
 
 def finished(folder: Path) -> Finished:
@@ -175,16 +62,18 @@ def finished(folder: Path) -> Finished:
     if problems:
         raise BadInputError(*problems)
     job = report.job
+    patterns, unrecalled = _recalled(_patterns(report, drawings, folder), _paths(report), drawings, folder)
     return Finished(
         folder,
         job,
-        _patterns(report, drawings, folder),
+        patterns,
         tuple(_sheets(report, file)),
         report.nest.options,
         job.dxf.machine(),
         report.nest.cost.rates,
         _paths(report),
         digest(content),
+        unrecalled,
     )
 
 
@@ -257,6 +146,30 @@ def _patterns(report: ReportEntry, drawings: dict[str, bytes | None], folder: Pa
     if problems:
         raise BadInputError(*problems)
     return tuple(patterns)
+
+
+def _recalled(
+    patterns: "Sequence[FlatPattern]", paths: Mapping[str, str], drawings: Mapping[str, bytes | None], folder: Path
+) -> "tuple[tuple[FlatPattern, ...], tuple[str, ...]]":
+    """Return the patterns with what their side files say, and the parts of which none does."""
+    from pipeline.recalled import recalled
+
+    found: list[FlatPattern] = []
+    unknown: list[str] = []
+    for pattern in patterns:
+        path = paths[pattern.part]
+        made = recalled(pattern, _side(folder / path), drawings[path] or b"")
+        found.append(made or pattern)
+        unknown += [] if made else [pattern.part]
+    return tuple(found), tuple(unknown)
+
+
+def _side(drawing: Path) -> bytes | None:
+    """Return the side file of a drawing; None where it cannot be read."""
+    try:
+        return drawing.with_suffix(".json").read_bytes()
+    except OSError:
+        return None
 
 
 def _wished(drawn: "FlatPattern", part: PartEntry, material: MaterialEntry) -> "FlatPattern":

@@ -11,6 +11,7 @@ from pipeline.dxftables import machine_of
 from pipeline.helps import helps_of, unused
 from pipeline.jobfile import JobFile, MaterialTable, ReadJob
 from pipeline.materials import Sourced, look_up
+from pipeline.plaintext import plain
 from pipeline.processes import limits
 from pipeline.processtables import ProcessTable
 from pipeline.provenance import Limit, limits_of
@@ -75,7 +76,7 @@ def job_of(read: ReadJob) -> Job:
     stock = stock_of(tables.stock, tables.material.grain)
     helps = helps_of(tables.process, process.kerf_mm, material)
     return Job(
-        name=tables.job.name or read.file.stem,
+        name=tables.job.name or plain(read.file.stem),
         parts=tuple(_part(read, number, material, process, stock.sheets) for number in range(len(tables.part))),
         material=material,
         process=process,

@@ -5,9 +5,8 @@ of complaints are looked up last (`locate`).  The tables of parts are those of `
 this version does what it says.
 """
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
@@ -17,18 +16,20 @@ from msgspec import Meta, field
 from pipeline.decode import Complaint, Walk, decode
 from pipeline.dxftables import DxfTable, alone_troubles
 from pipeline.helps import help_troubles
+from pipeline.jobrules import repeated, taken_by_blanks, too_many_copies
 from pipeline.locate import Place, nearest, places
-from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, text_of
+from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, refuse_huge, text_of
 from pipeline.paths import Path, written
+from pipeline.plaintext import plain
 from pipeline.processtables import ProcessTable
-from pipeline.sources import Sources, Tell, silent
+from pipeline.reach import Reach, silent
+from pipeline.sources import Seen, Sources, Tell, unnoticed
 from pipeline.stocktables import NestTable, StockTable, grain_troubles, other_material
 from pipeline.units import JOB_UNITS
 from stages.errors import BadInputError, Problem
+from stages.model.caps import MOST_PARTS, MOST_ROWS, MOST_STOCK
 from stages.model.curves import Table, Trouble, negatives, not_positive
-from stages.model.ducts import is_set
-from stages.model.faces import FaceFile
-from stages.model.meshes import MeshFile, MeshNormals
+from stages.model.meshes import MeshNormals
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
 from stages.model.sewing import mate_troubles
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound=Table)
 DEFAULTS = Tolerances()
 Text = Annotated[str, Meta(max_length=200)]
-KRows = Annotated[tuple[tuple[Number, Number], ...], Meta(min_length=1)]
+KRows = Annotated[tuple[tuple[Number, Number], ...], Meta(min_length=1, max_length=MOST_ROWS)]
 
 
 def length_mm(text: float) -> Length:
@@ -129,7 +130,14 @@ class ReportTable(Table, frozen=True, kw_only=True):
     traveller: traveller.pdf, the pages that go with the job through the shop.
     """
 
-    formats: tuple[FormatName, ...] = ("json", "png", "csv", "junit", "html", "traveller")
+    formats: Annotated[tuple[FormatName, ...], Meta(max_length=MOST_ROWS)] = (
+        "json",
+        "png",
+        "csv",
+        "junit",
+        "html",
+        "traveller",
+    )
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield a list without json: the report is the record of the job."""
@@ -141,12 +149,12 @@ class JobFile(Table, frozen=True, kw_only=True):
     """A whole job file."""
 
     schema: Literal[1]
-    part: Annotated[tuple[PartSpec, ...], Meta(min_length=1)]
+    part: Annotated[tuple[PartSpec, ...], Meta(min_length=1, max_length=MOST_PARTS)]
     units: Literal["mm", "cm", "m", "in"] = "mm"
     job: JobTable = JobTable()
     material: MaterialTable = MaterialTable()
     process: ProcessTable = ProcessTable()
-    stock: tuple[StockTable, ...] = ()
+    stock: Annotated[tuple[StockTable, ...], Meta(max_length=MOST_STOCK)] = ()
     nest: NestTable = field(default_factory=NestTable)
     tolerance: ToleranceTable = field(default_factory=ToleranceTable)
     dxf: DxfTable = DxfTable()
@@ -156,6 +164,7 @@ class JobFile(Table, frozen=True, kw_only=True):
         """Yield names that occur twice: they become file names, so upper and lower case are the same."""
         yield from repeated("part", "name", [part.name for part in self.part])
         yield from repeated("stock", "id", [stock.name for stock in self.stock])
+        yield from too_many_copies([part.quantity for part in self.part])
         yield from taken_by_blanks(self.part)
         yield from mate_troubles([(part.name, part.seam) for part in self.part])
         yield from grain_troubles(self.part, self.stock, self.material.grain)
@@ -172,30 +181,6 @@ class JobFile(Table, frozen=True, kw_only=True):
                 yield Trouble(f"part[{i}].face", f'"{part.face}" of a sheet of no known thickness', hint)
             if part.rotations == ():
                 yield Trouble(f"part[{i}].rotations", "no angle is allowed", 'list at least one, or write "free"')
-
-
-def taken_by_blanks(parts: Sequence[PartSpec]) -> Iterator[Trouble]:
-    """Yield the names that a blank of a divided part, or of a set, may take, `<part>.<n>`."""
-    divided = {part.name.casefold() for part in parts if _may_divide(part)}
-    for i, part in enumerate(parts):
-        whole, _, number = part.name.casefold().rpartition(".")
-        if number.isdecimal() and whole in divided:
-            hint = "choose a name that does not end in a dot and a number"
-            yield Trouble(f"part[{i}].name", f'"{part.name}" may be a blank of "{whole}"', hint)
-
-
-def _may_divide(part: PartSpec) -> bool:
-    """Return whether a part may become several blanks."""
-    return part.cut == "auto" or is_set(part.surface) or isinstance(part.surface, MeshFile | FaceFile)
-
-
-def repeated(table: str, key: str, names: Sequence[str]) -> Iterator[Trouble]:
-    """Yield the names that are the same as an earlier one."""
-    seen: Counter[str] = Counter()
-    for i, name in enumerate(names):
-        seen[name.casefold()] += 1
-        if seen[name.casefold()] > 1:
-            yield Trouble(f"{table}[{i}].{key}", f'"{name}" is taken', "upper and lower case count as the same")
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,22 +200,55 @@ class ReadJob:
     touched: Mapping[int, "Mapping[MeshNormals, MeshSource]"] = field(default_factory=dict)
 
 
-def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent) -> ReadJob:
+@dataclass(frozen=True, slots=True)
+class Given:
+    """How a job is given that does not lie in a file of its own, and what it may point at.
+
+    text: its bytes, where they are not those of the file; line: its number in a file of JSON Lines, for messages.
+    allow: the folders that the files it names may lie in, beside its own; None: anywhere.
+    seen: is told of every file that is looked for.
+    """
+
+    text: bytes | None = None
+    line: int | None = None
+    allow: tuple[FilePath, ...] | None = ()
+    seen: Seen = unnoticed
+
+
+FROM_FILE = Given()
+
+
+def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent, given: Given = FROM_FILE) -> ReadJob:
     """Return the job; `BadInputError` with every problem, each with its place.  tell: is told what takes long."""
-    tables, sources, inputs = read_as(JobFile, file, settings, tell)
+    try:
+        tables, sources, inputs = read_as(JobFile, file, settings, tell, given)
+    except BadInputError as error:
+        if given.line is None:
+            raise
+        raise BadInputError(*(_on_line(problem, str(file), given.line) for problem in error.problems)) from None
     return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched)
 
 
+def _on_line(problem: Problem, file: str, line: int) -> Problem:
+    """Return a problem of a text that is one line of a file, with its number there."""
+    return replace(problem, line=line) if problem.file == file else problem
+
+
 def read_as(
-    wanted: type[T], file: FilePath, settings: Iterable[str] = (), tell: Tell = silent
+    wanted: type[T],
+    file: FilePath,
+    settings: Iterable[str] = (),
+    tell: Tell = silent,
+    given: Given = FROM_FILE,
 ) -> tuple[T, Sources, tuple[tuple[str, str], ...]]:
     """Return the tables of a file of that sort, what it points at, and name and sha256 of all of it."""
-    content = read_bytes(file)
+    content = read_bytes(file) if given.text is None else given.text
     text = text_of(content, file)
     raw = parse(text, file)
+    refuse_huge(raw, file)
     set_paths = override(raw, settings)
     walk = Walk(unit=_unit(raw))
-    sources = Sources(file.parent, walk.unit, tell=tell)
+    sources = Sources(Reach(file.parent, given.allow, tell), walk.unit, seen=given.seen)
     walk.resolve = sources.resolve
     try:
         tables = decode(walk, wanted, raw)
@@ -238,7 +256,7 @@ def read_as(
         raise BadInputError(Problem(DEEP, file=str(file))) from None
     if tables is None:
         raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
-    return tables, sources, ((file.name, sha256(content).hexdigest()), *sources.digests)
+    return tables, sources, ((plain(file.name), sha256(content).hexdigest()), *sources.digests)
 
 
 def _unit(raw: dict[str, object]) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 
 from pipeline.decode import ResolveError
 from pipeline.meshfiles import LARGEST_FILE, MeshFileError, format_of, parsed
-from pipeline.sources import Tell
+from pipeline.reach import Reach
 from pipeline.units import MM_PER
 from stages.geometry.mesh import Mesh
 from stages.model.meshes import MeshFile, MeshNormals
@@ -28,8 +28,6 @@ SMALLEST_MM, LARGEST_MM = 1.0, 10_000.0
 LEAST_SHARE = 0.01
 """Of the largest sheet's diagonal."""
 SLIPS = (25.4, 1000.0, 1.0 / 25.4, 1.0 / 1000.0)
-TOLD = 20_000_000
-"""Bytes of a file above which reading takes so long that it is told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,30 +44,15 @@ class MeshSource:
         return float(np.linalg.norm(np.ptp(self.mesh.vertices[np.unique(self.mesh.faces)], axis=0)))
 
 
-def content_of(folder: Path, name: str, tell: Tell) -> bytes:
-    """Return the bytes of a mesh file, seen from a folder; ResolveError where there is no such file."""
+def content_of(reach: Reach, name: str) -> bytes:
+    """Return the bytes of a mesh file; ResolveError where there is no such file."""
     if name.startswith(SAMPLE):
         found = files("pipeline").joinpath("data", "meshes", Path(name[len(SAMPLE) :]).name)
         if not found.is_file():
             known = sorted(file.name for file in files("pipeline").joinpath("data", "meshes").iterdir())
             raise ResolveError("file", f'no mesh "{name}" comes with planish', f"there are: {', '.join(known)}")
         return found.read_bytes()
-    file = folder / name
-    try:
-        size = file.stat().st_size
-        if size > LARGEST_FILE:
-            hint = "export it coarser, or as binary STL"
-            raise ResolveError("file", f"{name} is larger than {LARGEST_FILE // 10**6} MB", hint)
-        if size > TOLD:
-            tell(f"reading {name}, {size // 10**6} MB")
-        return file.read_bytes()
-    except FileNotFoundError:
-        raise ResolveError("file", f"there is no file {name}", f"looked for {file}") from None
-    except IsADirectoryError:
-        raise ResolveError("file", f"{name} is a folder", "name the file in it") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise ResolveError("file", f"{name} cannot be read: {reason}", "") from None
+    return reach.content(name, LARGEST_FILE, "export it coarser, or as binary STL")
 
 
 def mesh_source(content: bytes, table: MeshFile | MeshNormals, job_unit: str) -> MeshSource:

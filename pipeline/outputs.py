@@ -60,7 +60,8 @@ def views(result: JobResult) -> dict[str, bytes]:
     """Return what the page of the report and the traveller draw, if the job asks for one of them."""
     if not {"html", "traveller"} & {*result.job.formats}:
         return {}
-    from pipeline.report.viewdata import VIEW, view_bytes, view_document
+    from pipeline.report.viewdata import view_bytes, view_document
+    from pipeline.report.viewentries import VIEW
 
     return {VIEW: view_bytes(view_document(result, worst_v))}
 

@@ -14,28 +14,36 @@ from pathlib import Path as FilePath
 
 from pipeline.decode import Repeated
 from pipeline.paths import Path, parsed
+from pipeline.reach import TooLargeError, limited, plain
 from stages.errors import BadInputError, Problem
 
 LARGEST_FILE = 20_000_000
 """Bytes; some 300 000 points.  A file above this is no description of a part."""
 
+DEEPEST = 40
+"""Tables and arrays in each other; a curve in a chain in a piece of a strip takes a dozen."""
 _TOML_PLACE = re.compile(r" \(at line (\d+), column (\d+)\)$")
+_STEP = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
+_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_STEP}(?:\.[ \t]*+{_STEP}){{{DEEPEST}}}")
+"""A dotted name that opens so many tables: tomllib takes the square of their number to read it."""
 _LONG_NUMBER = re.compile(r"[0-9A-Fa-f_]{4000,}")
+JSON_ENDINGS = (".json", ".jsonl", ".ndjson")
+"""One table in a file, and one in each line of a file."""
+MOST_VALUES = 500_000
+"""Tables, arrays and values of a file: some 150 000 points, which are looked at one by one."""
 DEEP = "tables or arrays are nested too deeply"
 
 
 def read_bytes(file: FilePath) -> bytes:
     """Return the bytes of a job file; `BadInputError` if it is not there or too large."""
     try:
-        with file.open("rb") as stream:
-            content = stream.read(LARGEST_FILE + 1)
+        return limited(plain(file), LARGEST_FILE)
+    except TooLargeError:
+        too_large = f"larger than {LARGEST_FILE // 10**6} MB"
+        raise BadInputError(Problem(too_large, hint="is this a job file?", file=str(file))) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise BadInputError(Problem(f"cannot be read: {reason}", file=str(file))) from None
-    if len(content) > LARGEST_FILE:
-        too_large = f"larger than {LARGEST_FILE // 10**6} MB"
-        raise BadInputError(Problem(too_large, hint="is this a job file?", file=str(file)))
-    return content
 
 
 def text_of(content: bytes, file: FilePath) -> str:
@@ -51,6 +59,8 @@ def text_of(content: bytes, file: FilePath) -> str:
 
 def parse(text: str, file: FilePath) -> dict[str, object]:
     """Return the top table; `BadInputError` with the place of a syntax error."""
+    if not is_json(file):
+        _refuse_long_keys(text, file)
     try:
         raw = _parse_json(text) if is_json(file) else tomllib.loads(text, parse_float=_number)
     except RecursionError:
@@ -62,9 +72,35 @@ def parse(text: str, file: FilePath) -> dict[str, object]:
     return raw
 
 
+def _refuse_long_keys(text: str, file: FilePath) -> None:
+    found = _LONG_KEY.search(text)
+    if found is not None:
+        line = text.count("\n", 0, found.start()) + 1
+        raise BadInputError(Problem(DEEP, hint=f"at most {DEEPEST} in each other", file=str(file), line=line))
+
+
+def refuse_huge(raw: object, file: FilePath) -> None:
+    """Raise `BadInputError` for tables that are nested too deeply or hold too much; nothing is looked at but that."""
+    level, count, depth = [raw], 1, 0
+    while level:
+        level = [inner for item in level for inner in _inside(item)]
+        count, depth = count + len(level), depth + 1
+        if depth > DEEPEST:
+            raise BadInputError(Problem(DEEP, hint=f"at most {DEEPEST} in each other", file=str(file)))
+        if count > MOST_VALUES:
+            message = f"more than {MOST_VALUES} values"
+            raise BadInputError(Problem(message, hint="divide it, or give curves in drawings", file=str(file)))
+
+
+def _inside(item: object) -> Iterable[object]:
+    if isinstance(item, dict):
+        return item.values()
+    return item if isinstance(item, list) else ()
+
+
 def is_json(file: FilePath) -> bool:
     """Return whether the file is read as JSON."""
-    return file.suffix.lower() == ".json"
+    return file.suffix.lower() in JSON_ENDINGS
 
 
 def _number(text: str) -> Decimal | str:

@@ -18,6 +18,7 @@ from pipeline.store import REPORT, safe_name
 from pipeline.supply import Row, Supply
 from stages.errors import BadInputError, Problem
 from stages.model.curves import CurveSpec
+from stages.model.cutfile import Machine
 from stages.model.material import Material, Part
 from stages.model.part import Flat, PartSpec
 from stages.model.sheet import Sheet
@@ -139,11 +140,19 @@ def _group(title: str, jobs: Mapping[str, Finished], supply: Supply | None) -> G
     return Group(
         title,
         material,
-        tuple(pattern.replace(part=name) for name, (_, pattern) in zip(names, found, strict=True)),
+        tuple(_named(pattern, name, given.machine) for name, (_, pattern) in zip(names, found, strict=True)),
         {name: order for name, (order, _) in zip(names, found, strict=True)},
         given,
         tuple(_notes(material, jobs, given)),
     )
+
+
+def _named(pattern: "FlatPattern", name: str, machine: Machine) -> "FlatPattern":
+    """Return a pattern under its pooled name, as a machine takes it."""
+    from pipeline.drawnout import drawn_out
+
+    made = pattern.replace(part=name)
+    return made if machine.flavour == "aama" else drawn_out(made)
 
 
 def _of_first(jobs: Mapping[str, Finished]) -> Supply:
@@ -163,6 +172,9 @@ def _notes(material: Material, jobs: Mapping[str, Finished], supply: Supply) -> 
     chorded = ", ".join(f'"{name}"' for name, job in jobs.items() if job.machine.flavour in CHORDED)
     if chorded:
         yield f"parts of {chorded} are nested and written as the chords that their drawings hold: {ARCS_ARE_HAD}"
+    unknown = ", ".join(f'"{name}/{part}"' for name, job in jobs.items() for part in job.unrecalled)
+    if unknown:
+        yield f"no side file tells notches and what holes are for of {unknown}: they are cut as drawn"
     yield from supply.notes
 
 

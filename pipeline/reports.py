@@ -6,13 +6,13 @@ formats need; the message names the place.  Values are not judged again.
 
 import json
 import os
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 import msgspec
 
+from pipeline import folders
 from pipeline.report.entries import entries
 from pipeline.report.render import FORMATS, Made, Report, by_format, each
 from pipeline.store import POOL_SCHEMA, REPORT, REPORT_SCHEMA
@@ -121,8 +121,9 @@ def render_again(out: Path, also: Sequence[str] = ()) -> tuple[Stored, list[str]
         raise BadInputError(Problem(message, "--format", hint, str(out)))
     files = {path: content for one in found.values() for path, content in one.items()}
     try:
-        for path, content in files.items():
-            _write(out / PurePosixPath(path), content)
+        with folders.opened(os.path.realpath(out)) as folder:
+            for path, content in files.items():
+                folders.replace(folder, path, content)
     except OSError as error:
         message = f"cannot be written: {error.strerror or error}"
         raise BadInputError(Problem(message, hint="make the folder writable", file=str(out))) from None
@@ -153,21 +154,3 @@ def _known(names: Iterable[str]) -> list[str]:
     if wrong:
         raise BadInputError(*wrong)
     return listed
-
-
-def _write(file: Path, content: bytes) -> None:
-    """Write a file as a whole or not at all."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    handle, draft = tempfile.mkstemp(prefix=f".{file.name}-", suffix=".part", dir=file.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-        Path(draft).chmod(NORMAL_FILE)
-        Path(draft).replace(file)
-    except BaseException:
-        Path(draft).unlink(missing_ok=True)
-        raise
-
-
-NORMAL_FILE = 0o644
-"""`mkstemp` makes files that no one else may read; reports are there to be read."""

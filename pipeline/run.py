@@ -5,7 +5,7 @@ stage that raises `NoSolutionError` has fallen short, which is its report's fata
 the reports, which are functions of the job alone.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Generic, Literal, ParamSpec, TypeVar
@@ -133,7 +133,26 @@ def skipped(stage: Stage, subject: str) -> Step[T]:
     return Step("skipped", StageReport(stage, subject))
 
 
-def run_job(job: Job, listener: Listener = silent) -> JobResult:
+Spread = Callable[[Runner, Job], Iterable[tuple[PartRun, ...]]]
+"""How the parts of a job are run: yields the blanks of each, in the order of the parts."""
+
+
+def one_after_the_other(runner: Runner, job: Job) -> Iterator[tuple[PartRun, ...]]:
+    """Run the parts of a job in this process."""
+    for part in job.parts:
+        yield run_set(runner, part, job)
+
+
+def spread(workers: int) -> Spread:
+    """Return the way to run the parts of a job in so many processes; in this one alone if that is enough."""
+    if workers == 1:
+        return one_after_the_other
+    from pipeline.parallel import spread_over
+
+    return spread_over(workers)
+
+
+def run_job(job: Job, listener: Listener = silent, by: Spread = one_after_the_other) -> JobResult:
     """Return what becomes of a job: each part constructed, verified, unrolled; all patterns nested and written.
 
     Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
@@ -141,14 +160,19 @@ def run_job(job: Job, listener: Listener = silent) -> JobResult:
     runner = Runner(listener)
     from pipeline.sewing import sewn_runs
 
-    runs = [run for part in job.parts for run in run_set(runner, part, job)]
+    runs = [run for blanks in by(runner, job) for run in blanks]
     return finish(runner, job, sewn_runs(runner, runs, job.tolerances))
 
 
 def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...]) -> JobResult:
     """Return what becomes of a job whose parts have got as far as they get: nested and written."""
-    patterns = cut_patterns(parts, job)
     nest: Step[Nesting] = skipped("nest", job.name)
+    try:
+        patterns = cut_patterns(parts, job)
+    except NoSolutionError as error:
+        fell: Step[tuple[CutFile, ...]] = Step("fail", fell_short("write", job.name, error), short=True)
+        runner.listener(fell)
+        return JobResult(job, parts, nest, fell, runner.seconds)
     if job.stock and len(patterns) == len(parts):
         nest = with_findings(nested(runner, patterns, job), job.repairs)
     write: Step[tuple[CutFile, ...]] = skipped("write", job.name)
@@ -163,7 +187,10 @@ def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...]) -> JobResult:
 
 
 def cut_patterns(parts: Sequence[PartRun], job: Job) -> "list[FlatPattern]":
-    """Return the patterns of all parts that passed, with the contours that the flavour of the drawings can hold."""
+    """Return the patterns of all parts that passed, with the contours that the flavour of the drawings can hold.
+
+    Raises NoSolutionError where there are none such: nothing lies outside of a needle.
+    """
     patterns = [run.pattern for run in parts if run.pattern is not None]
     if not patterns:
         return []

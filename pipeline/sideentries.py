@@ -17,6 +17,8 @@ Pair = tuple[float, float]
 Ends = tuple[Pair, Pair]
 Row3 = tuple[float, float, float]
 Side = Literal["up", "down"]
+Purpose = Literal["cut", "drill", "stitch"]
+NotchKind = Literal["v", "u", "castle", "slit", "t"]
 
 
 class JobSide(Struct, frozen=True):
@@ -82,7 +84,9 @@ class ContourSide(Struct, frozen=True):
     """A contour that is cut, as the file reads.
 
     part: null for a cut that two parts share.  copy: null where the part lies in its own flat frame.
-    contour: 0 the outer one.  area_mm2: what it encloses, null for what is not closed.
+    contour: 0 the outer one.  purpose: what a hole is for, null for a cut that is no contour.
+    circle: x, y and diameter of a round hole that is drilled or stitched through, exact where the file holds chords.
+    area_mm2: what it encloses, null for what is not closed.
     box: x least, y least, x most, y most in the drawing.
     """
 
@@ -91,9 +95,56 @@ class ContourSide(Struct, frozen=True):
     contour: int | None
     name: str
     layer: str
+    purpose: Purpose | None
+    circle: Row3 | None
     area_mm2: float | None
     length_mm: float
     box: tuple[float, float, float, float]
+
+
+class MarkSide(Struct, frozen=True):
+    """A mark as the file has it: its name, and what its layer means."""
+
+    name: str
+    layer: str
+
+
+class NotchSide(Struct, frozen=True):
+    """A notch: where it is on the edge, and the unit vector into the part.
+
+    in_outline: whether its shape is part of the outline; else it is drawn beside it.  cut: or else only marked.
+    """
+
+    name: str
+    kind: NotchKind
+    at: Pair
+    inward: Pair
+    depth_mm: float
+    width_mm: float
+    in_outline: bool
+    cut: bool
+
+
+class DrillSide(Struct, frozen=True):
+    """A round hole that the file says by a point: it is no contour there."""
+
+    name: str
+    purpose: Purpose
+    at: Pair
+    diameter_mm: float
+
+
+class FeatureSide(Struct, frozen=True):
+    """What a part was given and its drawing does not say: names in the order of the file, places in the flat frame.
+
+    boundary: x, y and bulge of each vertex of the outline before notches were cut into it; null: none were.
+    """
+
+    marks: tuple[MarkSide, ...]
+    texts: tuple[str, ...]
+    notches: tuple[NotchSide, ...]
+    drills: tuple[DrillSide, ...]
+    boundary: tuple[Row3, ...] | None
 
 
 class BendSide(Struct, frozen=True, kw_only=True):
@@ -153,6 +204,7 @@ class SideFile(Struct, frozen=True, kw_only=True):
     frame: of the drawing, that of a part or that of a sheet.
     bends, rolls: null where the parts come from drawings, which say nothing of it: their own jobs have it.
     rolls: null on a sheet too: parts are rolled once they are cut, by the side files of their own.
+    features: of a part in its flat frame, null for all else.
     """
 
     schema: Literal["planish-cut/1"]
@@ -168,6 +220,7 @@ class SideFile(Struct, frozen=True, kw_only=True):
     contours: tuple[ContourSide, ...]
     bends: tuple[BendSide, ...] | None
     rolls: tuple[RollSide, ...] | None
+    features: FeatureSide | None
 
 
 UNITS = {"length": "mm", "area": "mm2", "angle": "deg"}

@@ -22,11 +22,13 @@ from pipeline.sideentries import (
     FileSide,
     JobSide,
     LayerSide,
+    MarkSide,
     MaterialSide,
     PlacementSide,
     SheetSide,
     SideFile,
 )
+from pipeline.sidefeatures import features
 from pipeline.sidelines import Copy, bends, rolls
 from pipeline.store import digest
 
@@ -43,6 +45,7 @@ class Figures(Struct, frozen=True):
 
     contours: tuple[ContourSide, ...]
     layers: dict[str, LayerSide]
+    marks: tuple[MarkSide, ...] = ()
 
 
 def side_files(result: "JobResult", files: Mapping[str, bytes]) -> dict[str, bytes]:
@@ -102,6 +105,7 @@ def _side_file(
         contours=tuple(_contours(measured.contours, names)),
         bends=tuple(bend for copy in copies for bend in bends(copy)) if known else None,
         rolls=tuple(roll for copy in copies for roll in rolls(copy)) if known and not sheets else None,
+        features=features(copies[0].run, measured.marks, job.machine) if path.startswith("flat/") else None,
     )
 
 

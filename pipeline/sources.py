@@ -8,13 +8,15 @@ An outline must be closed; the holes of a plate, and the defects of a sheet, are
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from hashlib import sha256
+from io import BytesIO, TextIOWrapper
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from pipeline.decode import ResolveError, Several, suggestion
 from pipeline.paths import Path
+from pipeline.reach import Reach
 from pipeline.stocktables import LayersTable, StockTable
-from pipeline.units import UnreadableError
+from pipeline.units import UnreadableError, describe
 from stages.model.curves import CurveSpec, Table
 from stages.model.faces import FaceFile
 from stages.model.meshes import MeshFile, MeshNormals
@@ -38,8 +40,12 @@ Tell = Callable[[str], None]
 """Is told what takes long."""
 
 
-def silent(_text: str) -> None:
-    """Tell no one."""
+Seen = Callable[[FilePath], None]
+"""Is told of a file that is looked for."""
+
+
+def unnoticed(_file: FilePath) -> None:
+    """Note nothing."""
 
 
 @dataclass(slots=True)
@@ -47,21 +53,23 @@ class Sources:
     """The drawings and meshes of one job file, each read once, and their names and sha256.
 
     meshes, faces: by the number of the part; touched: the meshes besides that its surface points at.
-    tell: is told what takes long.
+    seen: is told of every file that is looked for, also of one that is not there.
     """
 
-    folder: FilePath
+    reach: Reach
     unit: str
     notes: list[str] = field(default_factory=list)
-    drawings: dict[FilePath, "Drawing"] = field(default_factory=dict)
+    drawings: dict[str, "Drawing"] = field(default_factory=dict)
     digests: list[tuple[str, str]] = field(default_factory=list)
     meshes: dict[int, "MeshSource"] = field(default_factory=dict)
     faces: dict[int, "CadSource"] = field(default_factory=dict)
     touched: dict[int, "dict[MeshNormals, MeshSource]"] = field(default_factory=dict)
-    tell: Tell = silent
+    seen: Seen = unnoticed
 
     def resolve(self, table: Table, path: Path) -> Table | Several:
         """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
+        if isinstance(table, MeshFile | MeshNormals | FaceFile | StockTable | CurveSpec) and table.file is not None:
+            self.seen(self.reach.folder / table.file)
         if isinstance(table, MeshFile):
             self.meshes[_part(path)] = self._mesh(table)
         if isinstance(table, MeshNormals):
@@ -87,7 +95,7 @@ class Sources:
         """Return the mesh of a file."""
         from pipeline.meshsources import content_of, mesh_source
 
-        content = content_of(self.folder, table.file, self.tell)
+        content = content_of(self.reach, table.file)
         source = mesh_source(content, table, self.unit)
         said = table.file, sha256(content).hexdigest()
         if said not in self.digests:
@@ -101,7 +109,7 @@ class Sources:
         """Read the faces of a part."""
         from pipeline.cadfiles import cad_source
 
-        source = cad_source(self.folder, table)
+        source = cad_source(self.reach, table)
         if (table.file, source.digest) not in self.digests:
             self.digests.append((table.file, source.digest))
         self.faces.update({number: source for number in path if isinstance(number, int)})
@@ -133,15 +141,7 @@ class Sources:
 
     def _content(self, name: str) -> bytes:
         """Return the bytes of a file, their sha256 noted."""
-        file = self.folder / name
-        try:
-            content = file.read_bytes()
-        except FileNotFoundError:
-            raise ResolveError("file", f"there is no file {name}", f"looked for {file}") from None
-        except OSError as error:
-            raise ResolveError("file", f"{name} cannot be read: {error.strerror}", "") from None
-        if len(content) > LARGEST_DRAWING:
-            raise ResolveError("file", f"{name} is larger than {LARGEST_DRAWING // 10**6} MB", "is this stock?")
+        content = self.reach.content(name, LARGEST_DRAWING, "is this stock?")
         said = name, sha256(content).hexdigest()
         if said not in self.digests:
             self.digests.append(said)
@@ -164,11 +164,11 @@ class Sources:
             raise ResolveError("layer" if layer else "file", f"{name}: {error.message}", error.hint) from None
 
     def _drawing(self, name: str) -> "Drawing":
-        file = self.folder / name
-        if file not in self.drawings:
-            self.drawings[file] = _read(file, name)
-            self.digests.append((name, sha256(file.read_bytes()).hexdigest()))
-        return self.drawings[file]
+        if name not in self.drawings:
+            content = self.reach.content(name, LARGEST_DRAWING, "is this a drawing?")
+            self.drawings[name] = _read(content, name)
+            self.digests.append((name, sha256(content).hexdigest()))
+        return self.drawings[name]
 
     def _unit(self, drawing: "Drawing", name: str) -> str:
         """Return the unit of a drawing."""
@@ -186,6 +186,9 @@ class Sources:
 
 def _sound(rows: tuple[StockTable, ...]) -> tuple[StockTable, ...]:
     """Return the pieces of stock of a file; refuse what breaks the rules of a stock."""
+    for text in (text for row in rows for text in (row.name, row.material or "")):
+        if len(text) > LONGEST_NAME or not text.isprintable():
+            raise ResolveError("file", f"{describe(text)} is no name of a piece or of a material", "plain text")
     wrong = [(row.name, trouble) for row in rows for trouble in row.troubles()]
     if wrong:
         told = (f'"{name}" {trouble.key}: {trouble.message}' for name, trouble in wrong[:MOST_WRONG])
@@ -194,6 +197,8 @@ def _sound(rows: tuple[StockTable, ...]) -> tuple[StockTable, ...]:
     return rows
 
 
+LONGEST_NAME = 200
+"""Letters: those of a name in a job file and of one in the other file."""
 MOST_WRONG = 5
 """Faults of the stock in one file that are told."""
 
@@ -217,19 +222,36 @@ def _all_closed(curves: "list[Piece]", key: str) -> None:
             raise ResolveError(key, message, "close the contour in the drawing")
 
 
-def _read(file: FilePath, name: str) -> "Drawing":
+def _read(content: bytes, name: str) -> "Drawing":
     """Return the drawing."""
-    from ezdxf.filemanagement import readfile
     from ezdxf.lldxf.const import DXFError
 
     try:
-        if file.stat().st_size > LARGEST_DRAWING:
-            raise ResolveError("file", f"{name} is larger than {LARGEST_DRAWING // 10**6} MB", "is this a drawing?")
-        return readfile(file)
-    except FileNotFoundError:
-        raise ResolveError("file", f"there is no file {name}", f"looked for {file}") from None
-    except OSError as error:
-        raise ResolveError("file", f"{name} cannot be read: {error.strerror or NO_DXF}", "") from None
+        return _drawing_of(content)
+    except OSError:
+        raise ResolveError("file", f"{name} cannot be read: {NO_DXF}", "") from None
     except (DXFError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
         hint = "write it again as DXF R2000 or later"
         raise ResolveError("file", f"{name} is no drawing that can be read: {error}", hint) from None
+
+
+def _drawing_of(content: bytes) -> "Drawing":
+    """Return the drawing of a binary DXF file, or of a text in the encoding that it names; `OSError` for no DXF."""
+    from ezdxf.document import Drawing
+    from ezdxf.filemanagement import dxf_stream_info, read
+    from ezdxf.lldxf.tagger import binary_tags_loader
+    from ezdxf.lldxf.validator import is_dxf_stream
+
+    if content.startswith(BINARY_DXF):
+        return Drawing.load(binary_tags_loader(content, errors="replace"))
+    if not is_dxf_stream(_text(content, "utf-8", "ignore")):
+        raise OSError(NO_DXF)
+    info = dxf_stream_info(_text(content, "utf-8", "ignore"))
+    return read(_text(content, info.encoding, "replace"))
+
+
+BINARY_DXF = b"AutoCAD Binary DXF"
+
+
+def _text(content: bytes, encoding: str, errors: str) -> TextIOWrapper:
+    return TextIOWrapper(BytesIO(content), encoding, errors)

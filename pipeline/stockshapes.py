@@ -14,7 +14,7 @@ from stages.construct.stockoutline import NoContourError, closed_edges
 from stages.errors import NoSolutionError
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.usable import Blocked, Kept, NoAreaError, inside, outside, touch, within
-from stages.model.curves import CurveSpec, Trouble
+from stages.model.curves import CurveSpec, Trouble, is_whole
 from stages.model.tolerances import Tolerances
 
 if TYPE_CHECKING:
@@ -62,14 +62,18 @@ def edge_of(row: "StockTable") -> ArcPath | None:
 
 
 def shape_troubles(row: "StockTable") -> Iterator[Trouble]:
-    """Yield the outlines of a stock that are no closed contours round an area, and what lies beside the stock."""
-    wrong = None if row.outline is None else _wrong(kept, row.outline)
+    """Yield the outlines of a stock that are no closed contours round an area, and what lies beside the stock.
+
+    A curve that is wrong in itself is passed over: it has been complained about.
+    """
+    known = row.outline is None or is_whole(row.outline)
+    wrong = None if row.outline is None or not known else _wrong(kept, row.outline)
     if wrong is not None:
         yield Trouble("outline", wrong.message, wrong.hint)
-    edge = None if wrong is not None else edge_of(row)
+    edge = None if wrong is not None or not known else edge_of(row)
     covering = [(f"defects[{i}]", defect) for i, defect in enumerate(row.defects)]
     covering += [(f"zones[{i}].outline", zone.outline) for i, zone in enumerate(row.zones)]
-    for key, spec in covering:
+    for key, spec in ((key, spec) for key, spec in covering if is_whole(spec)):
         error = _wrong(blocked, spec)
         if error is not None:
             yield Trouble(key, error.message, error.hint)

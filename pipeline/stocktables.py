@@ -10,14 +10,16 @@ from typing import Annotated, Literal
 from msgspec import Meta, field
 
 from pipeline.materials import are_same
+from stages.model.caps import MOST_ANGLES, MOST_PLACES, MOST_ROWS
 from stages.model.curves import CurveSpec, Table, Trouble, negatives, not_positive
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
 from stages.model.sheet import NestOptions, StockKind
 
-Rotations = Literal["free"] | tuple[Angle, ...]
+Rotations = Literal["free"] | Annotated[tuple[Angle, ...], Meta(max_length=MOST_ANGLES)]
 Name = Annotated[str, Meta(min_length=1, max_length=80)]
 LayerName = Annotated[str, Meta(min_length=1, max_length=255)]
+LayerNames = Annotated[tuple[LayerName, ...], Meta(max_length=MOST_ROWS)]
 DEFAULTS = NestOptions()
 BEST_ZONE, WORST_ZONE = 50, 56
 """Layers of quality zones in leather CAD; that the first is the best is our reading, no standard fixes it."""
@@ -44,11 +46,11 @@ class LayersTable(Table, frozen=True, kw_only=True):
     grain: lines along the grain, or along the line of tightness of a hide.  stretch: lines across it.
     """
 
-    outline: tuple[LayerName, ...] = ("SHEET", "21", "1")
-    defects: tuple[LayerName, ...] = ("SHEET_KEEPOUT", "11")
-    zones: tuple[ZoneLayer, ...] = field(default_factory=zone_layers)
-    grain: tuple[LayerName, ...] = ("7",)
-    stretch: tuple[LayerName, ...] = ("33",)
+    outline: LayerNames = ("SHEET", "21", "1")
+    defects: LayerNames = ("SHEET_KEEPOUT", "11")
+    zones: Annotated[tuple[ZoneLayer, ...], Meta(max_length=MOST_ROWS)] = field(default_factory=zone_layers)
+    grain: LayerNames = ("7",)
+    stretch: LayerNames = ("33",)
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield layers that mean two things."""
@@ -90,15 +92,15 @@ class StockTable(Table, frozen=True, kw_only=True):
     width: Length | None = None
     height: Length | None = None
     outline: CurveSpec | None = None
-    file: str | None = None
+    file: Annotated[str, Meta(max_length=500)] | None = None
     layers: LayersTable | None = None
-    entry: str | int | None = None
+    entry: Annotated[str, Meta(max_length=255)] | int | None = None
     quantity: Annotated[int, Meta(ge=1, le=100_000)] | None = None
     edge_gap: Length = field(default_factory=Length)
     price: Number | None = None
     grain: Angle | None = None
-    defects: tuple[CurveSpec, ...] = ()
-    zones: tuple[ZoneTable, ...] = ()
+    defects: Annotated[tuple[CurveSpec, ...], Meta(max_length=MOST_PLACES)] = ()
+    zones: Annotated[tuple[ZoneTable, ...], Meta(max_length=MOST_PLACES)] = ()
     material: Annotated[str, Meta(max_length=200)] | None = None
     thickness: Length | None = None
 

@@ -8,14 +8,14 @@ library exchanges two folders.  A folder that planish did not write is never rep
 import json
 import os
 import re
-import shutil
-import tempfile
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from hashlib import sha256
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
+from pipeline import folders
 from stages.errors import BadInputError, Problem
 
 REPORT = "report.json"
@@ -96,30 +96,55 @@ def _written(file: Path) -> frozenset[str] | None:
     return frozenset({REPORT, *(str(group.get("name")) for group in groups if isinstance(group, dict))})
 
 
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A new output folder while it grows: what it becomes, its name, the handles of the folder it lies in and of it."""
+
+    target: Path
+    name: str
+    parent: int
+    handle: int
+
+
 @contextmanager
-def replacement(out: Path, keep: Iterable[Path] = ()) -> Iterator[Path]:
+def replacement(out: Path, keep: Iterable[Path] = ()) -> Iterator[Draft]:
     """Give an empty folder that becomes `out` if the block ends well, and vanishes if it does not.
 
     keep: files that must not be replaced, such as the job file.  Raises `BadInputError` if `out` cannot be written,
-    before the block begins.
+    before the block begins.  Where `out` leads is looked up once: what becomes of the links on the way while the block
+    runs changes nothing.
     """
     target = Path(os.path.realpath(out))
     made: list[Path] = []
-    try:
-        refuse_foreign(target, [Path(os.path.realpath(path)) for path in keep])
-        made = [folder for folder in target.parents if not folder.exists()]
-        target.parent.mkdir(parents=True, exist_ok=True)
-        draft = Path(tempfile.mkdtemp(prefix=f".{target.name}-", suffix=".part", dir=target.parent))
-    except OSError as error:
-        _remove_empty(made)
-        raise _unwritable(out, error) from None
-    try:
-        yield draft
-        _swap(draft, target, out)
-    except BaseException:
-        shutil.rmtree(draft, ignore_errors=True)
-        _remove_empty(made)
-        raise
+    with ExitStack() as stack:
+        try:
+            refuse_foreign(target, [Path(os.path.realpath(path)) for path in keep])
+            made = [folder for folder in target.parents if not folder.exists()]
+            target.parent.mkdir(parents=True, exist_ok=True)
+            draft = stack.enter_context(_drafted(target))
+        except OSError as error:
+            _remove_empty(made)
+            raise _unwritable(out, error) from None
+        try:
+            yield draft
+            _swap(draft, out)
+        except BaseException:
+            stack.close()
+            _remove_empty(made)
+            raise
+
+
+@contextmanager
+def _drafted(target: Path) -> Iterator[Draft]:
+    """Give a new folder beside a target; what is left of it in the end goes."""
+    name = folders.unlikely(target.name, ".part")
+    with folders.opened(target.parent) as parent:
+        os.mkdir(name, folders.NEW_FOLDER, dir_fd=parent)
+        try:
+            with folders.opened(name, parent) as handle:
+                yield Draft(target, name, parent, handle)
+        finally:
+            folders.remove(name, parent)
 
 
 def _unwritable(out: Path, error: OSError) -> BadInputError:
@@ -135,56 +160,49 @@ def _remove_empty(folders: Iterable[Path]) -> None:
             folder.rmdir()
 
 
-def _swap(draft: Path, target: Path, out: Path) -> None:
-    """Put the draft in the place of the target; on failure the old target is back."""
-    old = draft.with_suffix(".old")
+def _swap(draft: Draft, out: Path) -> None:
+    """Put the draft in the place of its target; on failure the old one is back."""
+    name, old, parent = draft.target.name, folders.unlikely(draft.target.name, ".old"), draft.parent
     try:
-        _flush(draft)
-        draft.chmod(NORMAL_FOLDER & ~_umask())
-        if target.exists():
-            target.rename(old)
+        folders.sync(draft.handle)
+        there = _moved(name, old, parent)
         try:
-            draft.rename(target)
+            os.rename(draft.name, name, src_dir_fd=parent, dst_dir_fd=parent)
         except OSError:
-            if old.exists():
-                old.rename(target)
+            if there:
+                os.rename(old, name, src_dir_fd=parent, dst_dir_fd=parent)
             raise
     except OSError as error:
         raise _unwritable(out, error) from None
-    shutil.rmtree(old, ignore_errors=True)
+    folders.remove(old, parent)
+    if not folders.is_same(draft.handle, name, parent):
+        folders.remove_link(name, parent)
+        message = "another program changed the output folder while it was written"
+        raise BadInputError(Problem(message, hint="run again, or choose another with -o", file=str(out)))
 
 
-NORMAL_FOLDER = 0o777
-"""`mkdtemp` makes folders that no one else may read; an output folder has the user's normal permissions."""
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def _flush(folder: Path) -> None:
-    """Make the system write a folder's files to disk, and then its entries where folders can be opened."""
-    for path in sorted(folder.rglob("*")):
-        if path.is_file():
-            with path.open("rb") as stream, suppress(OSError):
-                os.fsync(stream.fileno())
-    for path in (folder, *(entry for entry in folder.rglob("*") if entry.is_dir())):
-        with suppress(OSError):
-            handle = os.open(path, os.O_RDONLY)
-            try:
-                os.fsync(handle)
-            finally:
-                os.close(handle)
-
-
-def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write files below a folder; `BadInputError` if the disk does not take them."""
+def _moved(name: str, aside: str, parent: int) -> bool:
+    """Move what goes by that name aside; return whether there was anything."""
     try:
-        for name, content in files.items():
-            path = folder / PurePosixPath(name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
+        os.rename(name, aside, src_dir_fd=parent, dst_dir_fd=parent)
+    except FileNotFoundError:
+        return False
+    return True
+
+
+def write_files(folder: Draft | Path, files: Mapping[str, bytes]) -> None:
+    """Write new files below a folder; `BadInputError` if the disk does not take them."""
+    try:
+        if isinstance(folder, Draft):
+            _write_all(folder.handle, files)
+            return
+        folder.mkdir(parents=True, exist_ok=True)
+        with folders.opened(folder) as handle:
+            _write_all(handle, files)
     except OSError as error:
-        raise _unwritable(folder, error) from None
+        raise _unwritable(folder.target if isinstance(folder, Draft) else folder, error) from None
+
+
+def _write_all(folder: int, files: Mapping[str, bytes]) -> None:
+    for path, content in files.items():
+        folders.write(folder, path, content)

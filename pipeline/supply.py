@@ -13,12 +13,14 @@ from msgspec import Meta, field
 
 from pipeline.dxftables import DxfTable, alone_troubles, machine_of
 from pipeline.helps import help_troubles, helps_of
-from pipeline.jobfile import ReportTable, read_as, repeated
+from pipeline.jobfile import Given, ReportTable, read_as
+from pipeline.jobrules import repeated
 from pipeline.processes import limits
 from pipeline.processtables import ProcessTable
 from pipeline.rates import Rates, rates_of
 from pipeline.stock import options_of, stock_of
 from pipeline.stocktables import NestTable, StockTable
+from stages.model.caps import MOST_STOCK
 from stages.model.curves import Table, Trouble
 from stages.model.cutfile import Machine
 from stages.model.material import Material
@@ -30,7 +32,7 @@ class StockFile(Table, frozen=True, kw_only=True):
     """A file of stock."""
 
     schema: Literal[1]
-    stock: Annotated[tuple[StockTable, ...], Meta(min_length=1)]
+    stock: Annotated[tuple[StockTable, ...], Meta(min_length=1, max_length=MOST_STOCK)]
     units: Literal["mm", "cm", "m", "in"] = "mm"
     nest: NestTable = field(default_factory=NestTable)
     process: ProcessTable = ProcessTable()
@@ -92,9 +94,12 @@ class Supply:
         return tuple(row.sheet for row in self.rows if row.serves(material, thickness_mm))
 
 
-def supply_of(file: Path) -> Supply:
-    """Return what a file of stock gives; `BadInputError` with every problem, each with its place."""
-    tables, sources, inputs = read_as(StockFile, file)
+def supply_of(file: Path, allow: Sequence[Path] = ()) -> Supply:
+    """Return what a file of stock gives; `BadInputError` with every problem, each with its place.
+
+    allow: folders that the files which it names may lie in, beside its own.
+    """
+    tables, sources, inputs = read_as(StockFile, file, given=Given(allow=tuple(allow)))
     stock = stock_of(tables.stock, None)
     known = limits(tables.process, None).get("kerf")
     kerf = None if known is None else known.value

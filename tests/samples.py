@@ -10,7 +10,7 @@ from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.outputs import outputs
 from pipeline.report.schema import report_schema
-from pipeline.run import run_job
+from pipeline.run import JobResult, run_job
 from tests.near import assert_relative
 
 SAMPLES = Path(__file__).parent.parent / "samples"
@@ -22,9 +22,18 @@ SHORT_SEARCH = "nest.time_limit=0.2"
 """For samples whose figures do not depend on how well the parts are nested."""
 
 
+def result_of(name: str, *changes: str) -> JobResult:
+    """Return what becomes of a sample, without pictures."""
+    return run_job(job_of(read(SAMPLES / name, ["report.formats=['json']", *changes])))
+
+
 def run(name: str, *changes: str) -> tuple[dict, int, dict[str, bytes]]:
-    """Return the report, the exit code and the files of a sample, without pictures."""
-    result = run_job(job_of(read(SAMPLES / name, ["report.formats=['json']", *changes])))
+    """Return the report, the exit code and the files of a sample."""
+    return told(result_of(name, *changes))
+
+
+def told(result: JobResult) -> tuple[dict, int, dict[str, bytes]]:
+    """Return the report, the exit code and the files of a job, the report held against the schema."""
     report, files = outputs(result)
     KEEPS_SCHEMA.validate(json.loads(files["report.json"]))
     return json.loads(json.dumps(report)), result.exit_code, files

@@ -3,14 +3,24 @@
 import numpy as np
 import pytest
 
+from pipeline.run import JobResult
 from samples.upper.panels import HALF_ANGLE, RADIUS, files
+from stages.model.cutfile import Flavour, Machine, Version
+from stages.write import write
+from stages.write.flavours import as_cut
+from tests.bench.written import apart
 from tests.near import assert_near
-from tests.samples import SAMPLES, SHORT_SEARCH, figure, run, stage
+from tests.samples import SAMPLES, SHORT_SEARCH, figure, result_of, run, stage, told
 
 
 @pytest.fixture(scope="module")
-def upper() -> dict[str, dict]:
-    report, code, written = run("upper/job.toml", SHORT_SEARCH)
+def made() -> JobResult:
+    return result_of("upper/job.toml", SHORT_SEARCH)
+
+
+@pytest.fixture(scope="module")
+def upper(made: JobResult) -> dict[str, dict]:
+    report, code, written = told(made)
     assert (code, report["status"]) == (0, "made"), report
     assert any(file.startswith("cut/") for file in written)
     return {part["name"]: part for part in report["parts"]}
@@ -62,6 +72,24 @@ def test_the_seat_is_square_and_strained_alike_in_both_halves(upper: dict[str, d
     element = np.sqrt(1.0 + (2.0 * x / 1000.0) ** 2 + (2.0 * y / 1000.0) ** 2)
     area = float(np.trapezoid(np.trapezoid(element, side, axis=1), side))
     assert_near(upper["seat"]["surface"]["area"], area, bound=1e-5 * area, why="edges on the fitted surface")
+
+
+@pytest.mark.parametrize("flavour", ["polyline-arcs", "lines-arcs", "polylines", "r12"])
+def test_outlines_that_may_not_lie_inside_are_near_the_exact_ones_in_every_flavour(
+    made: JobResult, flavour: Flavour
+) -> None:
+    """The rim of the toe is refitted through a mesh's vertices: its corners at the dart are sharp."""
+    version: Version = "R12" if flavour == "r12" else "R2000"
+    machine = Machine(flavour=flavour, version=version, side="outside")
+    patterns = [as_cut(run.pattern, machine) for run in made.parts if run.pattern is not None]
+    outcome = write(patterns, None, machine)
+    assert outcome.report.passed, outcome.report.findings
+    found = {metric.name: metric for metric in outcome.report.metrics}
+    assert found["inside_mm"].passed
+    assert found["max_deviation_mm"].passed
+    for pattern, file in zip(patterns, outcome.product, strict=True):
+        distance = apart(file.text, machine.layers, pattern)
+        assert distance.distance_mm <= distance.tolerance_mm, distance
 
 
 def test_sheet_metal_is_refused(upper: dict[str, dict]) -> None:

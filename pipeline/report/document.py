@@ -11,22 +11,20 @@ patterns.
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from pipeline import __version__
 from pipeline.files import FileNames, file_names
-from pipeline.job import Job
 from pipeline.layouts import engine_of
 from pipeline.provenance import environment, provenance
 from pipeline.report.costs import costs_entry, job_costs
 from pipeline.report.cuts import cuts_of_sheets
 from pipeline.report.figures import Figures, figures, total
+from pipeline.report.jobentry import job_entry
 from pipeline.report.nestentries import options_entry, stock_entry, wish_entry
 from pipeline.report.stockfigures import stock_figures
 from pipeline.run import JobResult, PartRun, Step
 from pipeline.store import digest
-from stages.model.cutfile import Machine
 from stages.model.report import Finding, Metric
 
 if TYPE_CHECKING:
@@ -45,7 +43,7 @@ def document(result: JobResult, files: Mapping[str, bytes]) -> Document:
     return {
         "schema": SCHEMA,
         "status": result.status,
-        "job": _job(result.job),
+        "job": job_entry(result.job),
         "provenance": provenance(result.job.digest, result.job.limits),
         "parts": [_part(run, measures.get(run.part.name)) for run in result.parts],
         "nest": nest_entry(result, measures),
@@ -89,6 +87,14 @@ def encoded(report: Mapping[str, object]) -> bytes:
     return f"{text}\n".encode()
 
 
+def compact(value: object) -> str:
+    """Return a value as JSON in one line; what is plain already, as nearly all is, is not looked through."""
+    try:
+        return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    except (TypeError, ValueError):  # arrays; numbers that are not finite
+        return json.dumps(plain(value), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
 def plain(value: object) -> object:
     """Return a value as JSON has it: numbers that are not finite as null, arrays as lists."""
     if isinstance(value, bool | int | str) or value is None:
@@ -119,59 +125,6 @@ def _detail(run: PartRun) -> dict[str, object]:
     return {key: value for step in run.steps for key, value in step.report.detail.items()}
 
 
-def _job(job: Job) -> Document:
-    material, tol = job.material, job.tolerances
-    return {
-        "name": job.name,
-        "customer": job.customer,
-        "revision": job.revision,
-        "digest": job.digest,
-        "units": job.units,
-        "material": {
-            "name": material.name,
-            "thickness_mm": material.thickness_mm,
-            "density_kg_m3": material.density_kg_m3,
-            "bend_radius_min_mm": material.bend_radius_min_mm,
-            "max_strain": material.max_strain,
-        },
-        "process": {
-            "type": job.process.type or None,
-            "kerf_mm": job.process.kerf_mm,
-            "min_hole_mm": job.process.min_hole_mm,
-            "min_web_mm": job.process.min_web_mm,
-            "on_narrow": "refuse" if job.process.refuses_narrow else "warn",
-            "slat_pitch_mm": job.process.slat_pitch_mm,
-            "kerf_compensation": "offset" if job.process.compensated else "none",
-        },
-        "tolerance": {
-            "accept": tol.accept,
-            "chord_mm": tol.chord_mm,
-            "join_mm": tol.join_mm,
-            "normalise": tol.normalise,
-        },
-        "dxf": _drawings(job.machine),
-        "formats": list(job.formats),
-        "notes": list(job.notes),
-    }
-
-
-def _drawings(machine: Machine) -> Document:
-    """Return how the drawings are written, and how they call their layers."""
-    return {
-        "flavour": machine.flavour,
-        "version": machine.version,
-        "layers": {meaning: {"name": layer.name, "colour": layer.colour} for meaning, layer in machine.layers.items()},
-        "side": machine.side,
-        "text": machine.text,
-        "one_file_per": machine.file_per,
-        "name": machine.file_name,
-        "also": machine.also,
-        "paper": machine.paper,
-        "size": machine.style.size,
-        "helps": asdict(machine.helps),
-    }
-
-
 def _basis(result: JobResult) -> Document:
     """Return who placed the copies, on which stock and with which wishes; nothing without stock."""
     if not result.job.stock:
@@ -199,9 +152,28 @@ def _part(run: PartRun, measured: Figures | None) -> Document:
         "flat": detail.get("flat") if passed else None,
         "surface": _surface(detail) if passed else None,
         **figures_entry(measured),
+        "tape": _tape(run, detail),
+        "formed": _formed(run),
         "nest": None if run.pattern is None else wish_entry(run.pattern),
         "stages": [{"stage": step.report.stage, **_step(step)} for step in run.steps],
     }
+
+
+def _tape(run: PartRun, detail: Document) -> Document | None:
+    """Return what is measured on the blank of a part that passed."""
+    flat = detail.get("flat")
+    if run.pattern is None or not isinstance(flat, dict):
+        return None
+    from pipeline.report.tape import tape_entry
+
+    return tape_entry(run.pattern, flat["edges"])
+
+
+def _formed(run: PartRun) -> Document | None:
+    """Return how large a formed part is; nothing of a plate, and where nothing was constructed."""
+    from pipeline.report.formedsize import formed_entry
+
+    return None if run.surface is None else formed_entry(run.surface)
 
 
 def _surface(detail: Document) -> object:
@@ -243,6 +215,7 @@ def _metric(metric: Metric) -> Document:
         "evidence": metric.evidence,
         "limit": metric.limit,
         "pass": metric.passed,
+        "margin": metric.margin,
         "where": metric.where,
     }
 

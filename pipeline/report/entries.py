@@ -23,6 +23,7 @@ class MetricEntry(Struct, frozen=True):
     evidence: str
     limit: Value
     passed: bool = field(name="pass")
+    margin: Number | None = None
 
 
 class FindingEntry(Struct, frozen=True):

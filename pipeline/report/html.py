@@ -7,68 +7,97 @@ a part is a JSON text inside that block, read when the part is opened.  The poli
 The page holds the numbers of `report.json` and, to draw, those of `view.json`; it computes but margins and positions.
 """
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.resources import files
 
-from pipeline.report.document import Document, plain
+from pipeline.report.document import Document, compact
 from pipeline.report.meanings import MEANINGS
+from pipeline.report.pages import asset, page
 
-ASSETS = files("pipeline") / "data" / "report"
 STYLES = ("page.css", "print.css")
 LIBRARY = "three.min.js"
 SCRIPTS = (
-    "view3d_model.js", "view3d_paint.js", "view3d.js", "format.js", "data.js", "table.js", "paths.js", "strain.js",
-    "plan.js", "flat.js", "sheets.js", "part.js", "page.js",
+    "view3d_places.js", "view3d_ruled.js", "view3d_mesh.js", "view3d_paint.js", "view3d_over.js", "view3d_hands.js",
+    "view3d.js", "format.js", "data.js", "table.js", "paths.js", "strain.js",
+    "heat.js", "plan.js", "flat.js", "sheets.js", "tape.js", "part.js", "page.js",
 )  # fmt: skip
 """In the order in which they run; those of the 3D view define one global name each, the others share one."""
+
+PAGE = "report.html"
+MOST_INSIDE = 2000
+"""Parts that the page holds itself: of some 27 kB each, what a phone still opens."""
+
+PER_FILE = 50
+"""Parts in a file beside the page: some 1.4 MB, which is there before anyone sees that it is loaded."""
+
+BESIDE = " 'self' file:"
+"""Where scripts may come from then: a page that was opened from a disk has no origin to be the same as."""
 
 Row = Mapping[str, object]
 
 
-def report_html(report: Document, view: Document) -> bytes:
-    """Return the page of a report; view: the document of `view.json` that was made with it."""
-    style = "\n".join(_asset(name) for name in STYLES)
-    blocks = {
-        "STYLE": style,
-        "DATA": data_block(report, view),
-        "LIBRARY": _asset(LIBRARY),
-        "SCRIPT": "\n".join(_asset(name) for name in SCRIPTS),
+def report_pages(report: Document, view: Document, most: int = MOST_INSIDE) -> dict[str, bytes]:
+    """Return the page of a report, and above so many parts the files beside it, by their paths."""
+    texts = part_texts(report, view)
+    if len(texts) <= most:
+        return {PAGE: report_html(report, view)}
+    return {PAGE: _page(data_block(report, view, ()), BESIDE)} | {
+        f"report/parts-{number}.js": _part_file(first, texts[first : first + PER_FILE])
+        for number, first in enumerate(range(0, len(texts), PER_FILE))
     }
-    head, *rest = _asset("page.html").split("<!--")
-    return "".join([head, *_filled(rest, blocks)]).encode()
 
 
-def _filled(pieces: Sequence[str], blocks: Mapping[str, str]) -> Iterator[str]:
-    """Yield the pieces of the template, each behind the block that its comment names."""
-    for piece in pieces:
-        name, _, after = piece.partition("-->")
-        yield blocks[name.strip()]
-        yield after
+def _part_file(first: int, texts: Sequence[str]) -> bytes:
+    """Return the script that hands parts to the page, counted from the first."""
+    return f"planishParts({first},{_escaped(compact(texts))});\n".encode()
 
 
-def _asset(name: str) -> str:
-    return (ASSETS / name).read_text(encoding="utf-8")
+def report_html(report: Document, view: Document) -> bytes:
+    """Return the page of a report with all in it; view: the document of `view.json` that was made with it."""
+    return _page(data_block(report, view, part_texts(report, view)), "")
 
 
-def data_block(report: Document, view: Document) -> str:
-    """Return what the page shows as JSON, without `<` and the line ends that are none in a script."""
+def _page(data: str, scripts: str) -> bytes:
+    """Return the page with its data; scripts: where others than its own may come from."""
+    blocks = {
+        "SCRIPTS": scripts,
+        "STYLE": asset(*STYLES),
+        "DATA": data,
+        "LIBRARY": asset(LIBRARY),
+        "SCRIPT": asset(*SCRIPTS),
+    }
+    return page("page.html", blocks)
+
+
+def part_texts(report: Document, view: Document) -> list[str]:
+    """Return every part as a JSON text of its own: what is reported and what is drawn of it."""
     shapes = {str(entry["name"]): entry for entry in entries(view, "parts")}
+    return [compact({"report": part, "view": shapes.get(str(part["name"]))}) for part in entries(report, "parts")]
+
+
+def data_block(report: Document, view: Document, texts: Sequence[str]) -> str:
+    """Return what the page shows as JSON; texts: of the parts, none if they lie beside the page."""
     parts = list(entries(report, "parts"))
     nest = report.get("nest")
-    job = {key: value for key, value in report.items() if key not in ("parts", "nest")}
+    job = {key: value for key, value in report.items() if key not in ("parts", "nest", "run")}
     content = {
-        "job": job,
+        "job": {**job, "run": _timeless(report.get("run"))},
         "nest": {**nest, "views": view.get("sheets", [])} if isinstance(nest, Mapping) else None,
         "rows": [summary(part) for part in parts],
-        "parts": [_json({"report": part, "view": shapes.get(str(part["name"]))}) for part in parts],
+        "parts": texts,
+        "per_file": None if len(texts) == len(parts) else PER_FILE,
         "meanings": {name: MEANINGS[name] for name in sorted(metric_names(report)) if name in MEANINGS},
     }
-    return _json(content).replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    return _escaped(compact(content))
 
 
-def _json(value: object) -> str:
-    return json.dumps(plain(value), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+def _timeless(run: object) -> Document:
+    """Return what is the same in every run of a job."""
+    return {"version": run.get("version")} if isinstance(run, Mapping) else {}
+
+
+def _escaped(text: str) -> str:
+    """Return JSON without `<` and the line ends that are none in a script."""
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
 def entries(document: Mapping[str, object], key: str) -> Iterator[Row]:

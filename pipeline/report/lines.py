@@ -3,7 +3,7 @@
 Where something fails, the lines below say where, how much, what is allowed, and what to do about it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from pipeline.run import JobResult, Step
 from stages.model.report import Metric, StageReport, Where
@@ -124,15 +124,21 @@ def _place(where: Where | None) -> str:
     return f" at {', '.join(steps)}"
 
 
-def outcome_line(result: JobResult, out: str, count: int) -> str:
-    """Return the last line: what was made, and where it lies."""
-    files = f"{count} drawing{'' if count == 1 else 's'}"
+OPENED = ("report.html", "traveller.pdf", "report.json")
+"""What a person opens next, in this order."""
+
+
+def outcome_line(result: JobResult, out: str, paths: Collection[str]) -> str:
+    """Return the last line: what was made, and what of it to open where.  paths: of all that was written."""
+    count = sum(path.endswith(".dxf") for path in paths)
+    *others, last = [f"{count} drawing{'' if count == 1 else 's'}", *(name for name in OPENED if name in paths)]
+    files = f"{', '.join(others)} and {last}" if others else last
     if result.status == "made":
         sheets = len(result.nest.product.layouts) if result.nest.product else 0
         on = f" on {sheets} sheet{'' if sheets == 1 else 's'}" if sheets else ""
         copies = sum(run.part.spec.quantity for run in result.parts)
-        return f"made: {copies} piece{'' if copies == 1 else 's'}{on}, {files} and report.json in {out}"
+        return f"made: {copies} piece{'' if copies == 1 else 's'}{on}, {files} in {out}"
     failed = [run.part.name for run in result.parts if run.pattern is None]
     if failed:
-        return f"{result.status}: {', '.join(failed)}; nothing nested, {files} and report.json in {out}"
-    return f"{result.status}: not all could be nested and written; {files} and report.json in {out}"
+        return f"{result.status}: {', '.join(failed)}; nothing nested, {files} in {out}"
+    return f"{result.status}: not all could be nested and written; {files} in {out}"

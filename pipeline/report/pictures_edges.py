@@ -52,12 +52,15 @@ def rulings(pattern: FlatPattern, places: Sequence[float] | Array) -> list[Point
     pieces = flat_pieces(pattern)
     if not pieces:
         return []
-    whole = np.clip(np.floor(places).astype(np.int64), 0, len(pieces) - 1)
-    ends = np.array([0.0, 1.0])
-    return [
-        pieces[i].positions(ends, np.full(2, min(max(float(v) - i, 0.0), 1.0)))
-        for i, v in zip(whole.tolist(), places, strict=True)
-    ]
+    v = np.asarray(places, dtype=np.float64)
+    whole = np.clip(np.floor(v).astype(np.int64), 0, len(pieces) - 1)
+    made = np.zeros((v.size, 2, 2))
+    for i, piece in enumerate(pieces):
+        here = whole == i
+        if here.any():
+            local = np.clip(v[here] - i, 0.0, 1.0)
+            made[here] = np.stack([piece.positions(np.full_like(local, u), local) for u in (0.0, 1.0)], axis=1)
+    return list(made)
 
 
 def corner_points(pattern: FlatPattern) -> Points2:

@@ -107,7 +107,7 @@ OUTSIDE = 1e-4
 
 def sampled(path: ArcPath, step: float) -> Points2:
     """Return points along a path, no farther apart than `step`, the first repeated if it is closed; mm."""
-    corners = arcpath.polygon(path, accuracy=step / STEPS)
+    corners = arcpath.polygon(path, accuracy=step / STEPS) if path.bulges.any() else path.vertices
     if path.closed:
         corners = np.vstack([corners, corners[:1]])
     counts = np.ceil(norm(np.diff(corners, axis=0)) / step).astype(np.int64).clip(1)

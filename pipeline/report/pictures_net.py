@@ -6,6 +6,7 @@ of the surface that hide others are not considered.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -123,19 +124,25 @@ def best_view(area: Points3, bulges: Points3 | None = None, long: Vector3 | None
     total = max(float(norm(area).sum()), np.finfo(float).tiny)
     edges = np.zeros((1, 3)) if bulges is None else bulges
     axis = np.zeros(3) if long is None else long
-    seen = [
-        (round(_seen(area, frame[2], total) + _form(edges, axis, frame), 2), frame)
-        for frame in (frame_of(azimuth, elevation) for elevation in ELEVATIONS_DEG for azimuth in AZIMUTHS_DEG)
-    ]
-    return max(seen, key=lambda pair: pair[0])[1]
+    frames = _frames()
+    worth = _seen(area, frames[:, 2], total) + _form(edges, axis, frames)
+    best: Points3 = frames[int(np.argmax(np.round(worth, 2)))]
+    return best
 
 
-def _form(edges: Points3, axis: Vector3, frame: Points3) -> float:
-    """Return what a view is worth for showing how the edges are bent, the length, and depth: not along x or y."""
-    bulge = float(np.abs(edges @ frame[2]).max())
-    shown = float(norm(frame[:2] @ axis))
-    square = float(np.abs(frame[0, :2]).min()) < LEAST_TURN
-    return FORM_BONUS * bulge + LENGTH_BONUS * shown - (SQUARE_ON if square else 0.0)
+@cache
+def _frames() -> Array:
+    """Return the views that are tried, shape (n, 3, 3)."""
+    return np.stack([frame_of(azimuth, elevation) for elevation in ELEVATIONS_DEG for azimuth in AZIMUTHS_DEG])
+
+
+def _form(edges: Points3, axis: Vector3, frames: Array) -> Values:
+    """Return what views are worth for showing how the edges are bent, the length, and depth: not along x or y."""
+    bulge = np.abs(edges @ frames[:, 2].T).max(axis=0)
+    shown = norm(frames[:, :2] @ axis)
+    square = np.abs(frames[:, 0, :2]).min(axis=1) < LEAST_TURN
+    worth: Values = FORM_BONUS * bulge + LENGTH_BONUS * shown - np.where(square, SQUARE_ON, 0.0)
+    return worth
 
 
 LENGTH_BONUS = 0.3
@@ -163,9 +170,12 @@ def hollows(shape: Net) -> Points3:
     return bulge
 
 
-def _seen(area: Array, towards: Array, total: float) -> float:
-    facing = area @ towards
-    return min(float(np.abs(facing).sum()) / total, SEEN_ENOUGH) + FRONT_BONUS * float(facing.sum()) / total
+def _seen(area: Array, towards: Points3, total: float) -> Values:
+    """Return what views in some directions show of the area, and of its front."""
+    facing = area @ towards.T
+    shown = np.minimum(np.abs(facing).sum(axis=0) / total, SEEN_ENOUGH)
+    worth: Values = shown + FRONT_BONUS * facing.sum(axis=0) / total
+    return worth
 
 
 def frame_of(azimuth_deg: float, elevation_deg: float) -> Points3:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from pipeline import __version__
 from pipeline.files import drawings
-from pipeline.outputs import pictures, stored, with_formats
+from pipeline.outputs import pictures, stored, views, with_formats
 from pipeline.pooled import Group, Order, Pool
 from pipeline.provenance import code_digest, environment
 from pipeline.report.costs import cost_lines
@@ -28,7 +28,7 @@ def pool_outputs(pool: Pool) -> tuple[Document, dict[str, bytes]]:
     files: dict[str, bytes] = {}
     for group, result in pool.results:
         sides = side_files(result, drawn[group.name])
-        every = {**stored(result), **drawn[group.name], **sides, **pictures(result)}
+        every = {**stored(result), **drawn[group.name], **sides, **pictures(result), **views(result)}
         files |= {f"{group.name}/{path}": content for path, content in every.items()}
     return report, with_formats(encoded(report), files)
 

@@ -46,12 +46,14 @@ def _junit(made: Made) -> dict[str, bytes]:
 def _html(made: Made) -> dict[str, bytes]:
     if "view.json" not in made.files:
         return {}
-    from pipeline.report.html import report_html
+    from pipeline.report.html import report_pages
 
-    return {"report.html": report_html(dict(made.report), dict(as_json_has_it(made.files["view.json"])))}
+    return report_pages(dict(made.report), dict(as_json_has_it(made.files["view.json"])))
 
 
 def _traveller(made: Made) -> dict[str, bytes]:
+    if "view.json" not in made.files:
+        return {}
     from pipeline.report.traveller import traveller_pdf
 
     return {"traveller.pdf": traveller_pdf(made)}

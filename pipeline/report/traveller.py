@@ -1,6 +1,7 @@
 """`traveller.pdf`: the pages that go with a job through the shop, one or more for each part and each nested sheet.
 
-Built from what lies in the output folder: the report, the drawings of flat patterns, the side files of nested sheets.
+Built from what lies in the output folder: the report, what is drawn of it (`view.json`), the side files of nested
+sheets.
 Pages are A4 upright, those of wide sheets across, patterns at true scale on A4 or A3 (`traveller_pattern`).
 
 The same folder gives the same bytes.  Letters beyond Western Europe are replaced, and the page says so.
@@ -13,13 +14,12 @@ import msgspec
 from pipeline.report.nestentries import sheet_of
 from pipeline.report.render import Made
 from pipeline.report.traveller_entries import PartEntry, ReportEntry, SheetEntry, SideEntry
-from pipeline.report.traveller_formed import formed_parts, formed_picture
-from pipeline.report.traveller_inked import Inked, contours_form, inked_patterns
+from pipeline.report.traveller_formed import formed_picture
+from pipeline.report.traveller_inked import Inked, inked, label_room_mm
 from pipeline.report.traveller_pages import A4_MM, Leaf, Subject, leaves, numbered, true_leaf, width_of
 from pipeline.report.traveller_part import PICTURE_MM, Shown, part_blocks, whole_view
-from pipeline.report.traveller_sheet import HIGH_SHARE, Nested, in_cut_order, sheet_blocks
-from pipeline.report.traveller_tape import tape
-from pipeline.report.viewdata import VIEW
+from pipeline.report.traveller_sheet import HIGH_SHARE, Copied, Nested, in_cut_order, sheet_blocks
+from pipeline.report.viewentries import VIEW, PartView, part_views
 from pipeline.store import safe_name
 from stages.geometry.arcpath import bounds
 from stages.write.drawing import rectangle
@@ -33,35 +33,33 @@ MADE = "made"
 
 
 def traveller_pdf(made: Made) -> bytes:
-    """Return the traveller of a finished job."""
+    """Return the traveller of a finished job; `KeyError` where it lies without what is drawn of its parts."""
     read, files = msgspec.convert(made.report, ReportEntry), made.files
-    patterns, formed = inked_patterns(read, files), formed_parts(files, VIEW)
+    views = part_views(files, VIEW)
+    flat = [(part.name, part.flat) for part in views.values() if part.flat is not None]
+    patterns = {name: inked(one, number) for number, (name, one) in enumerate(flat)}
     pages: list[Page] = []
     for number, part in enumerate(read.parts, 1):
-        if part.reached is None:  # nested from its drawing: its own job has its pages
-            continue
-        shape = formed.get(part.name)
-        picture = None if shape is None else formed_picture(shape, PICTURE_MM)
-        pages += _part_pages(read, part, number, patterns.get(part.name), picture)
+        if part.reached is not None:  # else nested from its drawing: its own job has its pages
+            pages += _part_pages(read, part, number, patterns.get(part.name), views.get(part.name))
     sheets = read.nest.sheets if read.status == MADE else ()
     for number, sheet in enumerate(sheets, 1):
-        pages += _sheet_pages(read, _nested(read, sheet, patterns, files), number, patterns)
-    forms = [contours_form(inked.pattern) for inked in patterns.values()]
-    return book(f"Traveller of {read.job.name}", pages, forms).encode("ascii")
+        pages += _sheet_pages(read, _nested(read, sheet, patterns, views, files), number)
+    return book(f"Traveller of {read.job.name}", pages, [one.form for one in patterns.values()])
 
 
 def _part_pages(
-    report: ReportEntry, part: PartEntry, number: int, inked: Inked | None, picture: str | None
+    report: ReportEntry, part: PartEntry, number: int, pattern: Inked | None, view: PartView | None
 ) -> Iterator[Page]:
-    """Yield the pages of a part.  picture: of it as formed."""
-    measured = None
-    if inked is not None and part.flat is not None:
-        measured = tape(part.flat, inked.pattern.outer.path, inked.pattern.outer.chord_mm)
-    shown = Shown(part, inked, measured, picture)
+    """Yield the pages of a part."""
+    picture = None
+    if view is not None and view.formed is not None:
+        picture = formed_picture(view.formed, PICTURE_MM, part.formed)
     subject = Subject(part.name, f"{_prefix(report)}-P{number:03d}", _said(report, part))
-    found: list[Leaf] = list(leaves(part_blocks(shown, report.job, width_of(A4_MM)), subject, A4_MM))
-    if inked is not None and whole_view(inked.pattern, width_of(A4_MM)).scale != 1.0:
-        whole = true_leaf(inked, measured, subject)
+    blocks = part_blocks(Shown(part, pattern, picture), report.job, width_of(A4_MM))
+    found: list[Leaf] = list(leaves(blocks, subject, A4_MM))
+    if pattern is not None and whole_view(pattern, width_of(A4_MM)).scale != 1.0:
+        whole = true_leaf(pattern, part.tape, subject)
         found[1:1] = [whole] if whole is not None else []
     return numbered(found, subject)
 
@@ -86,9 +84,13 @@ def _job_words(report: ReportEntry) -> list[str]:
 
 
 def _nested(
-    report: ReportEntry, entry: SheetEntry, patterns: Mapping[str, Inked], files: Mapping[str, bytes]
+    report: ReportEntry,
+    entry: SheetEntry,
+    patterns: Mapping[str, Inked],
+    views: Mapping[str, PartView],
+    files: Mapping[str, bytes],
 ) -> Nested:
-    """Return a sheet with its outline and the order of its copies."""
+    """Return a sheet with its outline, the order of its copies, and how its parts are drawn."""
     stock = next(sheet_of(one) for one in report.nest.stock if one.id == entry.stock)
     used = stock.width_mm if entry.used_length_mm is None else entry.used_length_mm
     outline = stock.outline if stock.outline is not None else rectangle(used, stock.height_mm)
@@ -97,15 +99,23 @@ def _nested(
     if path is not None and path in files:
         side = msgspec.json.decode(files[path], type=SideEntry)
     copies, is_cut_order = in_cut_order(entry, side)
-    return Nested(entry, outline, stock.defects, copies, is_cut_order)
+    drawn = {name: _copied(patterns[name], views[name]) for name in dict.fromkeys(one.part for one in copies)}
+    return Nested(entry, outline, stock.defects, copies, is_cut_order, drawn)
 
 
-def _sheet_pages(report: ReportEntry, sheet: Nested, number: int, patterns: Mapping[str, Inked]) -> Iterator[Page]:
+def _copied(pattern: Inked, view: PartView) -> Copied:
+    """Return how copies of a part are drawn."""
+    if view.flat is None:
+        raise ValueError(f"{view.name} is nested and has no pattern")
+    return Copied(pattern.number, view.flat.label, label_room_mm(view.flat))
+
+
+def _sheet_pages(report: ReportEntry, sheet: Nested, number: int) -> Iterator[Page]:
     """Yield the pages of a sheet, across where it is wider than high."""
     low_x, low_y, high_x, high_y = bounds(sheet.outline)
     paper = (A4_MM[1], A4_MM[0]) if high_x - low_x > high_y - low_y else A4_MM
     entry = sheet.entry
     words = " ".join([entry.stock, *_job_words(report), *(one.part for one in sheet.copies)])
     subject = Subject(f"{entry.stock}  no. {entry.index}", f"{_prefix(report)}-S{number:03d}", words)
-    blocks = sheet_blocks(sheet, patterns, report, (width_of(paper), HIGH_SHARE * paper[1]))
+    blocks = sheet_blocks(sheet, report, (width_of(paper), HIGH_SHARE * paper[1]))
     return numbered(list(leaves(blocks, subject, paper)), subject)

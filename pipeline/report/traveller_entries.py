@@ -5,32 +5,12 @@ Lengths are in mm, areas in mm2, angles in degrees, as they stand there.
 
 from msgspec import Struct, field
 
+from pipeline.report.entries import StageEntry
 from pipeline.report.nestentries import StockEntry
 from pipeline.sideentries import ContourSide, LayerSide
 from pipeline.sidelines import Radii, RollRow, Thickness
 
-Place = dict[str, float | int | str]
 Pair = tuple[float, float]
-
-
-class MetricEntry(Struct, frozen=True):
-    """A measured number with its limit."""
-
-    name: str
-    value: float | bool | None
-    unit: str
-    evidence: str
-    limit: float | bool | None
-    passed: bool = field(name="pass")
-    where: Place | None = None
-
-
-class FindingEntry(Struct, frozen=True):
-    """Something an engineer must know."""
-
-    code: str
-    message: str
-    fatal: bool
 
 
 class Bend(Struct, frozen=True):
@@ -53,13 +33,9 @@ class DetailEntry(Struct, frozen=True):
     rolls: tuple[RollRow, ...] = ()
 
 
-class StageEntry(Struct, frozen=True):
-    """A stage of a part, or of the job."""
+class FormingEntry(StageEntry, frozen=True, kw_only=True):
+    """A stage of a part with what forming needs of it."""
 
-    status: str
-    metrics: tuple[MetricEntry, ...]
-    findings: tuple[FindingEntry, ...]
-    stage: str = ""
     detail: DetailEntry = DetailEntry()
 
 
@@ -80,8 +56,16 @@ class MarkEntry(Struct, frozen=True):
     y: float
 
 
+class BlankEntry(Struct, frozen=True):
+    """What is cut."""
+
+    area: float
+    width: float
+    height: float
+
+
 class FlatEntry(Struct, frozen=True):
-    """Figures of a flat pattern; edges: by name, where they have one."""
+    """Figures of a flat pattern; edges: by name, where they have one.  cut: with allowances, where there are any."""
 
     area: float
     outline_length: float
@@ -91,6 +75,45 @@ class FlatEntry(Struct, frozen=True):
     edges: dict[str, float] | None
     marks: tuple[MarkEntry, ...]
     holes: tuple[HoleEntry, ...]
+    cut: BlankEntry | None = None
+
+    @property
+    def blank(self) -> BlankEntry:
+        """Return what is cut."""
+        return self.cut or BlankEntry(self.area, self.width, self.height)
+
+
+class SpotEntry(Struct, frozen=True):
+    """A corner by its letters, more than one where corners fall together, in the flat frame."""
+
+    letters: str
+    x: float
+    y: float
+
+
+class SpanEntry(Struct, frozen=True):
+    """A distance between two corners: along the edge, nothing on a diagonal, and straight."""
+
+    first: str = field(name="from")
+    last: str = field(name="to")
+    what: str
+    along_mm: float | None
+    straight_mm: float
+    evidence: str
+
+
+class TapeEntry(Struct, frozen=True):
+    """What is measured on a blank with a tape."""
+
+    spots: tuple[SpotEntry, ...]
+    spans: tuple[SpanEntry, ...]
+
+
+class FormedEntry(Struct, frozen=True):
+    """How large a formed part is along x, y and z."""
+
+    size_mm: tuple[float, float, float]
+    evidence: str
 
 
 class PartEntry(Struct, frozen=True):
@@ -103,7 +126,9 @@ class PartEntry(Struct, frozen=True):
     mass_kg: float | None
     cut_length_mm: float | None
     pierces: int | None
-    stages: tuple[StageEntry, ...]
+    stages: tuple[FormingEntry, ...]
+    tape: TapeEntry | None = None
+    formed: FormedEntry | None = None
 
 
 class MaterialEntry(Struct, frozen=True):

@@ -7,23 +7,26 @@ shortened: a cell that is wider than its column goes on in lines below, a row th
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import zip_longest
+from functools import lru_cache
+from itertools import accumulate, zip_longest
 
 from pipeline.report.traveller_ink import (
     HAIR,
     HAIR_MM,
     INK,
+    KEPT,
     LINE_MM,
     QUIET,
     Align,
     Colour,
     Pen,
+    line_of,
     moved,
     rule,
     said,
     stroked,
 )
-from stages.write.helvetica import BOLD, DESCENT, MM_PER_POINT, REGULAR, Face, wrapped
+from stages.write.helvetica import BOLD, DESCENT, MM_PER_POINT, REGULAR, Face, width_mm, wrapped
 
 LEADING = 1.28
 """From line to line, over the size of the letters."""
@@ -103,25 +106,26 @@ class Table:
 
 def table_blocks(table: Table) -> Iterator[Block]:
     """Yield a table row by row."""
-    heading = _heading(table)
+    heading = _heading(table.title, table.note, table.columns)
+    rooms = _rooms(table.columns)
     yield space(table.above_mm)
     for row in table.rows:
-        yield from _rows(table.columns, row, heading)
+        yield from _rows(rooms, row, heading)
 
 
-def line_blocks(text: str, width_mm: float, pen: Pen, heading: Block | None = None, x: float = 0.0) -> Iterator[Block]:
+def line_blocks(text: str, wide_mm: float, pen: Pen, heading: Block | None = None, x: float = 0.0) -> Iterator[Block]:
     """Yield a text line by line."""
     step = pen.size_pt * MM_PER_POINT * LEADING
-    for words in wrapped(text, width_mm, pen.size_pt, pen.face):
+    for words in wrapped(text, wide_mm, pen.size_pt, pen.face):
         yield Block(step, said(x, -step + _below(pen.size_pt), words, pen), heading)
 
 
-def title_block(text: str, width_mm: float, note: str = "") -> Block:
+def title_block(text: str, wide_mm: float, note: str = "") -> Block:
     """Return a title above a rule."""
-    made = list(line_blocks(text, width_mm, Pen(TITLE_PT, BOLD)))
-    made += line_blocks(note, width_mm, Pen(HEAD_PT, colour=QUIET)) if note else []
+    made = list(line_blocks(text, wide_mm, Pen(TITLE_PT, BOLD)))
+    made += line_blocks(note, wide_mm, Pen(HEAD_PT, colour=QUIET)) if note else []
     content, height = _together(made)
-    return Block(height + 1.0, content + stroked(INK, LINE_MM) + rule(0.0, -height - 0.6, width_mm, -height - 0.6))
+    return Block(height + 1.0, content + stroked(INK, LINE_MM) + rule(0.0, -height - 0.6, wide_mm, -height - 0.6))
 
 
 def _together(blocks: Sequence[Block]) -> tuple[str, float]:
@@ -138,49 +142,68 @@ def _below(size_pt: float) -> float:
     return size_pt * MM_PER_POINT * DESCENT
 
 
-def _heading(table: Table) -> Block:
+@dataclass(frozen=True, slots=True)
+class Room:
+    """Where the cells of a column lie: from x on, so wide, on the left or on the right side of that."""
+
+    x_mm: float
+    width_mm: float
+    right: bool
+
+
+@lru_cache(maxsize=KEPT)
+def _rooms(columns: Sequence[Column]) -> tuple[Room, ...]:
+    """Return where the cells of columns lie; behind numbers, which reach up to there, more is left free."""
+    starts = accumulate((column.width_mm for column in columns), initial=0.0)
+    right = [column.align == "right" for column in columns]
+    gaps = [NUMBER_GAP_MM if one else CELL_GAP_MM for one in right]
+    return tuple(
+        Room(x, column.width_mm - gap, one) for x, column, gap, one in zip(starts, columns, gaps, right, strict=False)
+    )
+
+
+@lru_cache(maxsize=KEPT)
+def _heading(title: str, note: str, columns: Sequence[Column]) -> Block:
     """Return the title of a table with the names of its columns."""
-    width = sum(column.width_mm for column in table.columns)
-    title = title_block(table.title, width, table.note)
-    names = Row(tuple(f"{one.name} {one.unit}".strip() for one in table.columns), REGULAR, QUIET)
-    lines = _cells(table.columns, names, HEAD_PT)
-    content, height = _lines(table.columns, lines, Pen(HEAD_PT, colour=QUIET))
-    under = stroked(HAIR, HAIR_MM) + rule(0.0, -height, width, -height)
-    return Block(title.height_mm + height, title.content + moved(content + under, 0.0, -title.height_mm))
-
-
-def _rows(columns: Sequence[Column], row: Row, heading: Block) -> Iterator[Block]:
-    """Yield a row, in several parts if it is too high for one."""
-    lines = _cells(columns, row, BODY_PT)
     width = sum(column.width_mm for column in columns)
-    parts = [lines[i : i + MOST_LINES] for i in range(0, len(lines), MOST_LINES)]
-    for number, part in enumerate(parts, 1):
-        content, height = _lines(columns, part, Pen(BODY_PT, row.face, row.colour))
-        under = stroked(HAIR, HAIR_MM) + rule(0.0, -height, width, -height) if number == len(parts) else ""
+    above = title_block(title, width, note)
+    names = [f"{one.name} {one.unit}".strip() for one in columns]
+    pen = Pen(HEAD_PT, colour=QUIET)
+    content, height = _lines(_rooms(columns), _cells(_rooms(columns), names, pen), pen)
+    under = stroked(HAIR, HAIR_MM) + rule(0.0, -height, width, -height)
+    return Block(above.height_mm + height, above.content + moved(content + under, 0.0, -above.height_mm))
+
+
+def _rows(rooms: Sequence[Room], row: Row, heading: Block) -> Iterator[Block]:
+    """Yield a row, in several parts if it is too high for one."""
+    pen = Pen(BODY_PT, row.face, row.colour)
+    lines = _cells(rooms, row.cells, pen)
+    width = rooms[-1].x_mm + rooms[-1].width_mm + (NUMBER_GAP_MM if rooms[-1].right else CELL_GAP_MM)
+    for first in range(0, len(lines), MOST_LINES):
+        content, height = _lines(rooms, lines[first : first + MOST_LINES], pen)
+        is_last = first + MOST_LINES >= len(lines)
+        under = stroked(HAIR, HAIR_MM) + rule(0.0, -height, width, -height) if is_last else ""
         yield Block(height, content + under, heading)
 
 
-def _cells(columns: Sequence[Column], row: Row, size_pt: float) -> list[tuple[str, ...]]:
+def _cells(rooms: Sequence[Room], cells: Sequence[str], pen: Pen) -> list[tuple[str, ...]]:
     """Return the lines of a row: of every cell one, empty where it has no more."""
-    rooms = [column.width_mm - _gap(column) for column in columns]
-    wraps = [wrapped(cell, room, size_pt, row.face) for cell, room in zip(row.cells, rooms, strict=True)]
+    wraps = [wrapped(cell, room.width_mm, pen.size_pt, pen.face) for cell, room in zip(cells, rooms, strict=True)]
     return list(zip_longest(*wraps, fillvalue=""))
 
 
-def _gap(column: Column) -> float:
-    """Return what is left free on the right of a column: more behind numbers, which reach up to there."""
-    return NUMBER_GAP_MM if column.align == "right" else CELL_GAP_MM
-
-
-def _lines(columns: Sequence[Column], lines: Sequence[tuple[str, ...]], pen: Pen) -> tuple[str, float]:
+def _lines(rooms: Sequence[Room], lines: Sequence[tuple[str, ...]], pen: Pen) -> tuple[str, float]:
     """Return the lines of a row drawn, and how high they are."""
     step = pen.size_pt * MM_PER_POINT * LEADING
-    made, x = [], 0.0
-    for number, column in enumerate(columns):
-        at = x + (column.width_mm - _gap(column) if column.align == "right" else 0.0)
-        own = Pen(pen.size_pt, pen.face, pen.colour, column.align)
-        for i, cells in enumerate(lines, 1):
-            if cells[number]:
-                made.append(said(at, -ROW_ABOVE_MM - i * step + _below(pen.size_pt) + 0.35, cells[number], own))
-        x += column.width_mm
-    return "".join(made), ROW_ABOVE_MM + len(lines) * step + ROW_BELOW_MM
+    places = [
+        (_start(room, cell, pen), -ROW_ABOVE_MM - i * step + _below(pen.size_pt) + 0.35, cell)
+        for i, cells in enumerate(lines, 1)
+        for room, cell in zip(rooms, cells, strict=True)
+        if cell
+    ]
+    return line_of(places, pen), ROW_ABOVE_MM + len(lines) * step + ROW_BELOW_MM
+
+
+def _start(room: Room, cell: str, pen: Pen) -> float:
+    """Return where the text of a cell begins."""
+    return room.x_mm + (room.width_mm - width_mm(cell, pen.size_pt, pen.face) if room.right else 0.0)

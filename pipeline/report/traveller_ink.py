@@ -5,6 +5,7 @@ Colours are few: ink, a quieter grey, hairlines, one tint, and the colours that 
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from math import cos, radians, sin
 from typing import Literal
 
@@ -26,6 +27,10 @@ BENDING: Colour = (0.55, 0.20, 0.45)
 HAIR_MM, THIN_MM, LINE_MM, OUTLINE_MM = 0.12, 0.18, 0.3, 0.4
 
 
+KEPT = 1024
+"""Of what is said again and again, how much is kept: pens and lines are few, scales of patterns some hundred."""
+
+
 @dataclass(frozen=True, slots=True)
 class Pen:
     """How a text is set."""
@@ -42,27 +47,43 @@ SHARES = {"left": 0.0, "middle": 0.5, "right": 1.0}
 
 
 def numbers(values: Iterable[float]) -> str:
-    """Return numbers as operators take them, to a tenth of a micrometre: nothing that is measured is drawn here."""
-    return " ".join(f"{value:.4f}".rstrip("0").rstrip(".") for value in values)
+    """Return numbers as operators take them, to a micrometre: nothing that is measured is drawn here."""
+    return " ".join([f"{value:.3f}".rstrip("0").rstrip(".") for value in values])
 
 
 def said(x: float, y: float, text: str, pen: Pen) -> str:
     """Return a text, its baseline at a place."""
+    back = SHARES[pen.align] * width_mm(text, pen.size_pt, pen.face) if pen.align != "left" else 0.0
+    if pen.angle_deg == 0.0:
+        return line_of([(x - back, y, text)], pen)
     c, s = cos(radians(pen.angle_deg)), sin(radians(pen.angle_deg))
-    back = SHARES[pen.align] * width_mm(text, pen.size_pt, pen.face)
     place = numbers((c, s, -s, c, x - back * c, y - back * s))
-    size = numbers((pen.size_pt * MM_PER_POINT,))
-    return f"BT /{pen.face.key} {size} Tf {filled(pen.colour)} {place} Tm {encoded(text)} Tj ET\n"
+    return f"{_begun(pen)} {place} Tm {encoded(text)} Tj ET\n"
 
 
+def line_of(texts: Iterable[tuple[float, float, str]], pen: Pen) -> str:
+    """Return upright texts in letters of one kind, each from where its baseline begins."""
+    made = [f"1 0 0 1 {x:.2f} {y:.2f} Tm {encoded(text)} Tj" for x, y, text in texts]
+    return f"{_begun(pen)} {' '.join(made)} ET\n" if made else ""
+
+
+@lru_cache(maxsize=KEPT)
+def _begun(pen: Pen) -> str:
+    """Return how a text begins: its typeface, size and colour."""
+    return f"BT /{pen.face.key} {numbers((pen.size_pt * MM_PER_POINT,))} Tf {filled(pen.colour)}"
+
+
+@lru_cache(maxsize=KEPT)
 def filled(colour: Colour) -> str:
     """Return the colour that areas and letters have from here on."""
     return f"{numbers(colour)} rg"
 
 
+@lru_cache(maxsize=KEPT)
 def stroked(colour: Colour, width_mm: float, dash: str = "[] 0") -> str:
     """Return how lines are from here on."""
-    return f"{numbers(colour)} RG {numbers((width_mm,))} w {dash} d\n"
+    width = f"{width_mm:.6f}".rstrip("0")
+    return f"{numbers(colour)} RG {width} w {dash} d\n"
 
 
 def rule(x: float, y: float, to_x: float, to_y: float) -> str:

@@ -1,59 +1,64 @@
-"""A pattern as pages draw it: its contours are one form of the file, however often they are shown."""
+"""A pattern as pages draw it: its contours are a form of the file, however often they are shown, its marks strokes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import groupby
 
-from pipeline.readpatterns import read_pattern
-from pipeline.readpieces import NoPatternError
-from pipeline.report.traveller_entries import ReportEntry
-from pipeline.store import safe_names
-from stages.model.cutfile import PROFILES, Layer
-from stages.model.pattern import FlatPattern
-from stages.write.drawing import extent, room
-from stages.write.pdf import outline
+import numpy as np
+
+from pipeline.report.traveller_paths import extents, joined, outlines
+from pipeline.report.viewentries import FlatView, MarkView, PathView
+from stages.geometry.arcpath import ArcPath
+from stages.write.drawing import clear_mm
 from stages.write.pdfbook import Form
 
 BESIDE = 0.1
 """Around contours, for the width of their lines, which is never so large a share of what is shown."""
 
+Pair = tuple[float, float]
+
 
 @dataclass(frozen=True, slots=True)
 class Inked:
-    """A pattern, the number of the form that draws its contours, and how much room its label has around it, mm."""
+    """A pattern: the number of the form that draws its contours, that form, its marks by layers, its extent in mm."""
 
-    pattern: FlatPattern
-    form: int
-    room_mm: float
-
-
-def inked_patterns(report: ReportEntry, files: Mapping[str, bytes]) -> dict[str, Inked]:
-    """Return the patterns of the parts that passed, by their names, as their drawings have them."""
-    drawings = report.job.dxf
-    layers = PROFILES["planish"] if drawings is None else {
-        meaning: Layer(entry.name, entry.colour) for meaning, entry in drawings.layers.items()
-    }  # fmt: skip
-    chord_mm = 0.0 if report.job.tolerance is None else report.job.tolerance.chord_mm
-    found: dict[str, Inked] = {}
-    for name, safe in safe_names(part.name for part in report.parts).items():
-        content = files.get(f"flat/{safe}.dxf")
-        if content is not None:
-            pattern = _read(content, chord_mm, layers, name)
-            found[name] = Inked(pattern, len(found), room(pattern))
-    return found
+    number: int
+    form: Form
+    marks: tuple[tuple[str, str], ...]
+    low: Pair
+    high: Pair
 
 
-def _read(content: bytes, chord_mm: float, layers: Mapping[str, Layer], name: str) -> FlatPattern:
-    try:
-        return read_pattern(content.decode("ascii"), chord_mm, layers)
-    except NoPatternError as error:
-        error.add_note(f"the drawing of part {name!r}")
-        raise
+def inked(flat: FlatView, number: int) -> Inked:
+    """Return a pattern whose contours are the form of that number."""
+    marks = sorted(flat.marks, key=_layer)
+    paths = joined([*flat.contours, *marks])
+    count = len(flat.contours)
+    boxes, drawn = extents(paths), outlines(paths)
+    low, high = boxes[:, :2].min(axis=0).tolist(), boxes[:, 2:].max(axis=0).tolist()
+    outer_low, outer_high = boxes[0, :2], boxes[0, 2:]
+    beside = BESIDE * float((outer_high - outer_low).max())
+    (x, y), (to_x, to_y) = (outer_low - beside).tolist(), (outer_high + beside).tolist()
+    form = Form((x, y, to_x, to_y), " h ".join(drawn[:count]) + " h B*\n")
+    return Inked(number, form, tuple(_strokes(marks, drawn[count:])), (low[0], low[1]), (high[0], high[1]))
 
 
-def contours_form(pattern: FlatPattern) -> Form:
-    """Return the contours of a pattern, filled and drawn in the colours that are set."""
-    paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
-    low_x, low_y, high_x, high_y = extent(paths)
-    beside = BESIDE * max(high_x - low_x, high_y - low_y)
-    box = low_x - beside, low_y - beside, high_x + beside, high_y + beside
-    return Form(box, " ".join(f"{outline(path)} h" for path in paths) + " B*\n")
+def _layer(mark: MarkView) -> str:
+    return mark.layer
+
+
+def _strokes(marks: Iterable[MarkView], drawn: Iterable[str]) -> Iterable[tuple[str, str]]:
+    """Yield the marks of each layer, drawn."""
+    for layer, pairs in groupby(zip(marks, drawn, strict=True), key=lambda pair: pair[0].layer):
+        yield layer, "".join(f"{path} {'s' if mark.closed else 'S'}\n" for mark, path in pairs)
+
+
+def label_room_mm(flat: FlatView) -> float:
+    """Return how far the place of a part's name is from all contours, mm."""
+    return clear_mm(np.array(flat.label), map(arc_path, flat.contours))
+
+
+def arc_path(path: PathView) -> ArcPath:
+    """Return a path as a value."""
+    rows = np.array(path.points).reshape(-1, 3)
+    return ArcPath(rows[:, :2], rows[:, 2], path.closed)

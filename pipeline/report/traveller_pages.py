@@ -6,11 +6,11 @@ The line of 100 mm is on every page: a print on which it is not 100 mm long was 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from pipeline.report.traveller_entries import TapeEntry
 from pipeline.report.traveller_flow import Block, line_blocks, stacked
 from pipeline.report.traveller_ink import HAIR, INK, LINE_MM, QUIET, THIN_MM, Pen, moved, rule, said, stroked
 from pipeline.report.traveller_inked import Inked
 from pipeline.report.traveller_pattern import PAPERS, View, drawn_pattern, scale_text, shifted, true_view
-from pipeline.report.traveller_tape import Tape
 from stages.write.helvetica import BOLD, lost, wrapped
 from stages.write.pdfobjects import Page
 
@@ -80,20 +80,22 @@ def _again(lines: Sequence[Block], paper_mm: tuple[float, float]) -> str:
     return made + stroked(INK, LINE_MM) + rule(MARGIN_MM, y - 1.2, paper_mm[0] - MARGIN_MM, y - 1.2)
 
 
-def true_leaf(inked: Inked, spots: Tape | None, subject: Subject) -> Leaf | None:
+def true_leaf(inked: Inked, tape: TapeEntry | None, subject: Subject) -> Leaf | None:
     """Return the page that shows a pattern at 1:1, on the smallest paper that holds it; None where none does."""
     for paper, width, height in PAPERS:
         room = width - 2.0 * (MARGIN_MM + LETTERS_MM), height - TOP_MM - FOOT_MM - HEAD_MM - 2.0 * LETTERS_MM
-        view = true_view(inked.pattern, room)
+        view = true_view(inked, room)
         if view is not None:
-            return _true_leaf(inked, spots, subject, (paper, width, height), view)
+            return _true_leaf(inked, tape, subject, (paper, width, height), view)
     return None
 
 
-def _true_leaf(inked: Inked, spots: Tape | None, subject: Subject, paper: tuple[str, float, float], view: View) -> Leaf:
+def _true_leaf(
+    inked: Inked, tape: TapeEntry | None, subject: Subject, paper: tuple[str, float, float], view: View
+) -> Leaf:
     name, width, height = paper
     room = width - 2.0 * (MARGIN_MM + LETTERS_MM), height - TOP_MM - FOOT_MM - HEAD_MM - 2.0 * LETTERS_MM
-    drawn = shifted(drawn_pattern(inked, view, spots), view, room)
+    drawn = shifted(drawn_pattern(inked, view, tape), view, room)
     top = height - TOP_MM
     words = f"{scale_text(view.scale)}   true scale on {name}: check the line below before you lay it on the blank"
     first, *rest = wrapped(subject.name, width_of((width, height)) - 120.0, 11.0, BOLD)

@@ -6,7 +6,8 @@ The first page has head, facts, pattern and what to measure; tables go on behind
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from pipeline.report.traveller_entries import FlatEntry, JobEntry, MetricEntry, PartEntry
+from pipeline.report.entries import MetricEntry
+from pipeline.report.traveller_entries import FlatEntry, JobEntry, PartEntry, TapeEntry
 from pipeline.report.traveller_flow import (
     BODY_PT,
     LEADING,
@@ -36,7 +37,7 @@ from pipeline.report.traveller_ink import (
     stroked,
 )
 from pipeline.report.traveller_inked import Inked
-from pipeline.report.traveller_numbers import DASH, counted, kilograms, millimetres, plain, share, square
+from pipeline.report.traveller_numbers import DASH, counted, kilograms, millimetres, plain, square
 from pipeline.report.traveller_pattern import (
     AROUND_MM,
     SIZES_MM,
@@ -47,8 +48,6 @@ from pipeline.report.traveller_pattern import (
     shifted,
     sizes,
 )
-from pipeline.report.traveller_tape import Tape
-from stages.model.pattern import FlatPattern
 from stages.write.helvetica import BOLD, CAPITALS, MM_PER_POINT, REGULAR, width_mm, wrapped
 
 NAME_PT = 20.0, 14.0, 10.0
@@ -68,11 +67,10 @@ CLASS_WORDS = {"exact": "EXACT", "rejected": "REJECTED", "inconclusive": "NOT DE
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A part with its pattern as the drawing has it, and what is measured on it; neither where it was refused."""
+    """A part with its pattern, which one that was refused has not, and its picture."""
 
     part: PartEntry
     inked: Inked | None
-    tape: Tape | None
     picture: str | None
     """Operators that draw the formed part in a box of `PICTURE_MM`, from its lower left corner."""
 
@@ -84,8 +82,8 @@ def part_blocks(shown: Shown, job: JobEntry, width_mm: float) -> Iterator[Block]
     yield _facts_block(shown, job, width_mm)
     if shown.inked is not None and part.flat is not None:
         yield from _pattern_blocks(shown, shown.inked, part.flat, width_mm)
-    if shown.tape is not None:
-        yield from _tape_blocks(shown.tape, width_mm)
+    if part.tape is not None:
+        yield from _tape_blocks(part.tape, width_mm)
     yield from _check_blocks(part, width_mm)
     yield from _finding_blocks(part, width_mm)
     for table in forming_tables(part, width_mm):
@@ -137,8 +135,9 @@ def _facts(part: PartEntry, job: JobEntry) -> Iterator[tuple[str, str]]:
     yield "Material", job.material.name or "not stated"
     yield "Thickness", "not stated" if job.material.thickness_mm is None else f"{job.material.thickness_mm:g} mm"
     if part.flat is not None:
-        yield "Blank", f"{millimetres(part.flat.width)} \N{MULTIPLICATION SIGN} {millimetres(part.flat.height)} mm"
-        yield "Area", square(part.flat.area)
+        blank = part.flat.blank
+        yield "Blank", f"{millimetres(blank.width)} \N{MULTIPLICATION SIGN} {millimetres(blank.height)} mm"
+        yield "Area", square(blank.area)
         yield "Mass", kilograms(part.mass_kg)
         yield "Cut", f"{millimetres(part.cut_length_mm, 'mm')}, {counted(part.pierces, 'pierce')}"
     tolerance, process = job.tolerance, job.process
@@ -179,8 +178,8 @@ def _facts_block(shown: Shown, job: JobEntry, width_mm: float) -> Block:
 def _pattern_blocks(shown: Shown, inked: Inked, flat: FlatEntry, width_mm: float) -> Iterator[Block]:
     """Yield the whole pattern at a scale that is said."""
     around = AROUND_MM + SIZES_MM
-    view = whole_view(inked.pattern, width_mm)
-    content = drawn_pattern(inked, view, shown.tape) + sizes(flat, view)
+    view = whole_view(inked, width_mm)
+    content = drawn_pattern(inked, view, shown.part.tape) + sizes(flat.blank, view)
     title = title_block(f"Flat pattern   {scale_text(view.scale)}", width_mm, _pattern_note(view))
     high = view.size[1] + around + AROUND_MM
     room = width_mm - around - AROUND_MM, view.size[1]
@@ -189,10 +188,10 @@ def _pattern_blocks(shown: Shown, inked: Inked, flat: FlatEntry, width_mm: float
     yield Block(title.height_mm + high, title.content + moved(placed, 0.0, -title.height_mm))
 
 
-def whole_view(pattern: FlatPattern, width_mm: float) -> View:
+def whole_view(inked: Inked, width_mm: float) -> View:
     """Return how the whole pattern is shown on the first page."""
     around = AROUND_MM + SIZES_MM
-    return best_view(pattern, (width_mm - around - AROUND_MM, PATTERN_HIGH_MM - around - AROUND_MM))
+    return best_view(inked, (width_mm - around - AROUND_MM, PATTERN_HIGH_MM - around - AROUND_MM))
 
 
 def _pattern_note(view: View) -> str:
@@ -200,20 +199,21 @@ def _pattern_note(view: View) -> str:
     return f"Seen from above, in mm{turned}. Dashed: bend up; dash-dot: bend down; fine: roll."
 
 
-def _tape_blocks(tape: Tape, width_mm: float) -> Iterator[Block]:
+def _tape_blocks(tape: TapeEntry, width_mm: float) -> Iterator[Block]:
     """Yield what to measure with a tape."""
     if not tape.spans:
         return
-    share_mm = width_mm / 4.0
+    share_mm = width_mm / 5.0
     columns = (
         Column("from \N{EN DASH} to", share_mm),
         Column("what", share_mm),
         Column("along the edge", share_mm, "right", "mm"),
         Column("straight", share_mm, "right", "mm"),
+        Column("evidence", share_mm),
     )
     rows = tuple(
-        Row((span.spots, span.what, millimetres(span.along_mm), millimetres(span.straight_mm)),
-            BOLD if span.along_mm is None else REGULAR)
+        Row((f"{span.first} {DASH} {span.last}", span.what, millimetres(span.along_mm), millimetres(span.straight_mm),
+             span.evidence), BOLD if span.along_mm is None else REGULAR)
         for span in tape.spans
     )  # fmt: skip
     yield from table_blocks(Table("Measure on the blank", columns, rows, above_mm=3.0))
@@ -246,14 +246,14 @@ def _check_blocks(part: PartEntry, width_mm: float) -> Iterator[Block]:
         Column("check", width_mm - 22.0 - 26.0 - 26.0 - 22.0 - 20.0 - 22.0),
         Column("value", 26.0, "right"),
         Column("limit", 26.0, "right"),
-        Column("of the limit", 22.0, "right"),
+        Column("margin", 22.0, "right"),
         Column("verdict", 20.0),
         Column("evidence", 22.0),
     )
     shown = [check for i, check in enumerate(found) if i < WORST or not check[1].passed]
     rows = tuple(
         Row(
-            (stage, one.name, plain(one.value, one.unit), plain(one.limit, one.unit), _share_text(one),
+            (stage, one.name, plain(one.value, one.unit), plain(one.limit, one.unit), _margin(one),
              "pass" if one.passed else "FAIL", one.evidence),
             colour=INK if one.passed else BAD,
         )
@@ -264,9 +264,8 @@ def _check_blocks(part: PartEntry, width_mm: float) -> Iterator[Block]:
         yield from table_blocks(Table("Checks", columns, rows, more))
 
 
-def _share_text(metric: MetricEntry) -> str:
-    numeric = not (isinstance(metric.limit, bool) or not metric.limit)
-    return share(_share(metric)) if numeric else DASH
+def _margin(metric: MetricEntry) -> str:
+    return DASH if metric.margin is None else plain(metric.margin, metric.unit)
 
 
 def _finding_blocks(part: PartEntry, width_mm: float) -> Iterator[Block]:

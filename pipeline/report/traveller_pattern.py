@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 
-from pipeline.report.traveller_entries import FlatEntry
+from pipeline.report.traveller_entries import BlankEntry, TapeEntry
 from pipeline.report.traveller_ink import (
     BENDING,
     HAIR,
@@ -30,11 +30,8 @@ from pipeline.report.traveller_ink import (
 )
 from pipeline.report.traveller_inked import Inked
 from pipeline.report.traveller_numbers import millimetres
-from pipeline.report.traveller_tape import Tape
-from stages.model.pattern import FlatPattern
-from stages.write.drawing import extent
 from stages.write.helvetica import BOLD
-from stages.write.pdf import numbers, stroke
+from stages.write.pdf import numbers
 
 DENOMINATORS = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5)
 ENLARGED = (10.0, 5.0, 2.0)
@@ -94,16 +91,9 @@ class View:
         return f"{numbers((0.0, s, -s, 0.0, x, y) if self.turned else (s, 0.0, 0.0, s, x, y))} cm\n"
 
 
-def extent_of(pattern: FlatPattern) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the extent of all that is drawn of a pattern."""
-    low_x, low_y, high_x, high_y = extent([pattern.outer.path, *(mark.path for mark in pattern.marks)])
-    return (low_x, low_y), (high_x, high_y)
-
-
-def best_view(pattern: FlatPattern, room: tuple[float, float]) -> View:
+def best_view(inked: Inked, room: tuple[float, float]) -> View:
     """Return the largest view of a pattern in a room (mm) at a scale of the series; unturned if that is as large."""
-    low, high = extent_of(pattern)
-    views = [_view(low, high, room, turned=turned) for turned in (False, True)]
+    views = [_view(inked.low, inked.high, room, turned=turned) for turned in (False, True)]
     return max(views, key=lambda view: view.scale)
 
 
@@ -133,21 +123,23 @@ def scale_text(scale: float) -> str:
     return f"{scale:.6g} : 1" if scale > 1.0 else f"1 : {1.0 / scale:.6g}"
 
 
-def drawn_pattern(inked: Inked, view: View, spots: Tape | None) -> str:
-    """Return a pattern, the lower left corner of its extent at the origin.  spots: the corners to be named."""
+def drawn_pattern(inked: Inked, view: View, tape: TapeEntry | None) -> str:
+    """Return a pattern, the lower left corner of its extent at the origin.  tape: the corners to be named."""
     made = ["q ", view.operators, _lines(inked, view.scale), "Q\n"]
-    if spots is not None:
-        made += [*_diagonals(spots, view), *_letters(spots, view)]
+    if tape is not None:
+        made += [*_diagonals(tape, view), *_letters(tape, view)]
     return "".join(made)
 
 
 def _lines(inked: Inked, scale: float) -> str:
     """Return contours and marks of a pattern in its own frame, so wide that they are right on paper."""
-    made = [f"1 j {filled(TINT)} ", stroked(INK, OUTLINE_MM / scale), f"/X{inked.form} Do\n"]
+    made = [f"1 j {filled(TINT)} ", stroked(INK, OUTLINE_MM / scale), f"/X{inked.number} Do\n"]
     for layer, (colour, width, dash) in STYLES.items():
-        paths = [mark.path for mark in inked.pattern.marks if mark.layer == layer]
-        if paths:
-            made += [stroked(colour, width / scale, _dashes(dash, scale)), *map(stroke, paths)]
+        made += [
+            stroked(colour, width / scale, _dashes(dash, scale)) + strokes
+            for name, strokes in inked.marks
+            if name == layer
+        ]
     return "".join(made)
 
 
@@ -157,28 +149,30 @@ def _dashes(dash: str, scale: float) -> str:
     return f"[{numbers(steps)}] 0" if steps else "[] 0"
 
 
-def _diagonals(spots: Tape, view: View) -> Iterator[str]:
+def _diagonals(tape: TapeEntry, view: View) -> Iterator[str]:
     """Yield the diagonals that are measured."""
+    at = {letter: (spot.x, spot.y) for spot in tape.spots for letter in spot.letters}
     yield stroked(QUIET, HAIR_MM, "[0.8 1.2] 0")
-    for first, last in spots.diagonals:
-        yield rule(*view.place(*spots.corners[first]), *view.place(*spots.corners[last]))
+    for span in tape.spans:
+        if span.along_mm is None:
+            yield rule(*view.place(*at[span.first]), *view.place(*at[span.last]))
     yield stroked(INK, LINE_MM)
 
 
-def _letters(spots: Tape, view: View) -> Iterator[str]:
+def _letters(tape: TapeEntry, view: View) -> Iterator[str]:
     """Yield the letters of the corners, outside of the pattern."""
     middle = view.size[0] / 2.0, view.size[1] / 2.0
-    for spot in spots.spots:
+    for spot in tape.spots:
         x, y = view.place(spot.x, spot.y)
         away = hypot(x - middle[0], y - middle[1]) or 1.0
         at = x + OUTSIDE_MM * (x - middle[0]) / away, y + OUTSIDE_MM * (y - middle[1]) / away
-        yield said(at[0], at[1] - CAPITAL_MM, spot.letters, Pen(LETTER_PT, BOLD, align="middle"))
+        yield said(at[0], at[1] - CAPITAL_MM, " = ".join(spot.letters), Pen(LETTER_PT, BOLD, align="middle"))
 
 
-def sizes(flat: FlatEntry, view: View) -> str:
+def sizes(blank: BlankEntry, view: View) -> str:
     """Return width and height of a pattern with their lines, below and left of its extent."""
     wide, high = view.size
-    across, upwards = (flat.height, flat.width) if view.turned else (flat.width, flat.height)
+    across, upwards = (blank.height, blank.width) if view.turned else (blank.width, blank.height)
     below, beside = -AROUND_MM - 1.0, -AROUND_MM - 1.0
     pen = Pen(SIZE_PT, align="middle")
     return "".join([
@@ -210,10 +204,9 @@ PAPERS: Sequence[tuple[str, float, float]] = (
 """Papers for a page at true scale, upright and across (ISO 216), the first that is large enough."""
 
 
-def true_view(pattern: FlatPattern, room: tuple[float, float]) -> View | None:
+def true_view(inked: Inked, room: tuple[float, float]) -> View | None:
     """Return a view at 1:1 if it lies in a room."""
-    low, high = extent_of(pattern)
-    views = (View(1.0, turned, low, high) for turned in (False, True))
+    views = (View(1.0, turned, inked.low, inked.high) for turned in (False, True))
     return next((view for view in views if fits(view, room)), None)
 
 

@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import hypot
 
+import numpy as np
+
 from pipeline.report.traveller_entries import JobEntry, NestEntry, PlacementEntry, ReportEntry, SheetEntry, SideEntry
 from pipeline.report.traveller_flow import Block, Column, Row, Table, space, table_blocks, title_block
 from pipeline.report.traveller_ink import (
@@ -25,7 +27,6 @@ from pipeline.report.traveller_ink import (
     said,
     stroked,
 )
-from pipeline.report.traveller_inked import Inked
 from pipeline.report.traveller_numbers import counted, degrees, kilograms, millimetres, plain, share
 from pipeline.report.traveller_part import head_blocks
 from pipeline.report.traveller_pattern import DENOMINATORS, scale_text
@@ -42,14 +43,24 @@ NUMBER_PT, NAME_PT, LEAST_PT = 8.0, 7.0, 5.0
 
 
 @dataclass(frozen=True, slots=True)
+class Copied:
+    """How copies of a part are drawn: by the form of that number, its name at a place with so much room around it."""
+
+    form: int
+    label_at: tuple[float, float]
+    room_mm: float
+
+
+@dataclass(frozen=True, slots=True)
 class Nested:
-    """A sheet with its outline and its copies in the order in which they are cut, or placed."""
+    """A sheet with its outline, its copies in the order in which they are cut, or placed, and how parts are drawn."""
 
     entry: SheetEntry
     outline: ArcPath
     defects: tuple[ArcPath, ...]
     copies: tuple[PlacementEntry, ...]
     is_cut_order: bool
+    drawn: Mapping[str, Copied]
 
 
 def in_cut_order(entry: SheetEntry, side: SideEntry | None) -> tuple[tuple[PlacementEntry, ...], bool]:
@@ -64,15 +75,13 @@ def in_cut_order(entry: SheetEntry, side: SideEntry | None) -> tuple[tuple[Place
     return tuple(sorted(entry.placements, key=lambda one: first[(one.part, one.copy)])), True
 
 
-def sheet_blocks(
-    sheet: Nested, patterns: Mapping[str, Inked], report: ReportEntry, room_mm: tuple[float, float]
-) -> Iterator[Block]:
+def sheet_blocks(sheet: Nested, report: ReportEntry, room_mm: tuple[float, float]) -> Iterator[Block]:
     """Yield what stands on the pages of a sheet.  room_mm: how wide they are, and how high it may be drawn."""
     wide_mm, high_mm = room_mm
     entry = sheet.entry
     name = f"{entry.stock}  no. {entry.index}"
     yield from head_blocks(name, _about(sheet, report.job), wide_mm, used_chip(entry.utilisation))
-    yield _drawing(sheet, patterns, wide_mm, high_mm)
+    yield _drawing(sheet, wide_mm, high_mm)
     yield from table_blocks(_order_table(sheet, wide_mm))
     yield from _checks(report.nest, wide_mm)
 
@@ -120,7 +129,7 @@ def _scale(size: tuple[float, float], within: tuple[float, float]) -> float:
         ten *= 10.0
 
 
-def _drawing(sheet: Nested, patterns: Mapping[str, Inked], wide_mm: float, high_mm: float) -> Block:
+def _drawing(sheet: Nested, wide_mm: float, high_mm: float) -> Block:
     """Return the sheet with its copies, numbered."""
     low_x, low_y, high_x, high_y = bounds(sheet.outline)
     scale = _scale((high_x - low_x, high_y - low_y), (wide_mm, high_mm))
@@ -131,10 +140,10 @@ def _drawing(sheet: Nested, patterns: Mapping[str, Inked], wide_mm: float, high_
     made.append(f"{filled(TINT)} {stroked(INK, THIN_MM / scale)}")
     labels = []
     for number, placed in enumerate(sheet.copies, 1):
-        inked, motion = patterns[placed.part], Rigid2(placed.x, placed.y, placed.angle, placed.mirrored)
-        made.append(_copy(inked, motion))
-        at = apply(motion, inked.pattern.label_at[None, :])[0]
-        labels.append(_label(number, placed.part, (s * at[0] + x, s * at[1] + y), scale * inked.room_mm))
+        copied, motion = sheet.drawn[placed.part], Rigid2(placed.x, placed.y, placed.angle, placed.mirrored)
+        made.append(_copy(copied.form, motion))
+        at = apply(motion, np.array([copied.label_at]))[0]
+        labels.append(_label(number, placed.part, (s * at[0] + x, s * at[1] + y), scale * copied.room_mm))
     if sheet.entry.offcut is not None:
         left = sheet.entry.offcut
         middle = s * (left.x + left.width_mm / 2.0) + x, s * (left.y + left.height_mm / 2.0) + y
@@ -161,10 +170,10 @@ def _stock(sheet: Nested, scale: float) -> Iterator[str]:
         yield stroke(rectangle(left.width_mm, left.height_mm, left.x, left.y))
 
 
-def _copy(inked: Inked, motion: Rigid2) -> str:
+def _copy(form: int, motion: Rigid2) -> str:
     """Return a copy where it lies."""
     (a, c), (b, d) = matrix(motion)
-    return f"q {numbers((a, b, c, d, motion.x, motion.y))} cm /X{inked.form} Do Q\n"
+    return f"q {numbers((a, b, c, d, motion.x, motion.y))} cm /X{form} Do Q\n"
 
 
 def _label(number: int, name: str, at: tuple[float, float], free_mm: float) -> str:

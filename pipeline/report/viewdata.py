@@ -5,12 +5,11 @@ rulings are by their two ends and v.  Places of metrics are those that the repor
 flat frame.  Everything is in mm in the flat frame of the part, or in the frame of its sheet; nothing is measured here.
 """
 
-import json
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from pipeline.report.document import Document, plain
+from pipeline.report.document import Document, compact
 from pipeline.report.pictures_edges import flat_pieces, rulings
 from pipeline.report.pictures_net import ruling_places
 from pipeline.report.viewformed import formed
@@ -21,7 +20,6 @@ from stages.model.pattern import FlatPattern
 from stages.model.report import Metric
 from stages.model.sheet import Sheet
 
-VIEW = "view.json"
 VIEW_SCHEMA = "planish-view/1"
 
 
@@ -39,18 +37,14 @@ def view_bytes(document: Document) -> bytes:
     """Return the document as JSON, every part and every sheet on a line of its own."""
     rows = {key: value if isinstance(value, list) else None for key, value in document.items()}
     lines = [
-        f'"{key}": {_line(document[key])}' if listed is None else f'"{key}": [\n{_lines(listed)}\n]'
+        f'"{key}": {compact(document[key])}' if listed is None else f'"{key}": [\n{_lines(listed)}\n]'
         for key, listed in rows.items()
     ]
     return "".join(["{\n", ",\n".join(lines), "\n}\n"]).encode()
 
 
 def _lines(rows: Sequence[object]) -> str:
-    return ",\n".join(_line(row) for row in rows)
-
-
-def _line(value: object) -> str:
-    return json.dumps(plain(value), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return ",\n".join(compact(row) for row in rows)
 
 
 def part_view(run: PartRun, worst_v: float | None = None) -> Document:

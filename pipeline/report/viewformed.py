@@ -1,14 +1,12 @@
 """The formed part for the view of the report that can be turned: two rails and the rulings between, or triangles.
 
 A ruled part is known by both ends of its rulings in space and flat, as all that is shown is linear along a ruling; the
-page makes the points between.  A mesh, and a part of several faces, is its triangles.  Curvature and strain are colours
-over a limit that does not depend on what the part reaches where the material or the class gives one.
+page makes the points between.  A mesh, and a part of several faces, is its triangles.  What it can be coloured by is in
+`viewfields`.
 
 `deviation_mm` says how far what is shown is from the surface (sampled): halfway between rulings, halfway across a cell
 along its shorter diagonal, and the rounding of the positions.  For looking at, not for measuring.
 """
-
-from math import floor, inf, log10
 
 import numpy as np
 
@@ -17,21 +15,18 @@ from pipeline.report.pictures_branched import as_mesh
 from pipeline.report.pictures_edges import flat_pieces
 from pipeline.report.pictures_mesh import mesh_view
 from pipeline.report.pictures_net import Net, net, view_direction
-from pipeline.report.pictures_strain import vertex_strains
 from pipeline.report.viewarrays import encoded_array, encoded_numbers, encoded_points, rounding_mm
 from pipeline.report.viewcells import COLUMNS, cells
+from pipeline.report.viewfields import ENDS, patch_of, ruled_fields, strain_field
 from pipeline.report.viewlines import Lines, lines_on, trim_rings
 from pipeline.run import PartRun
-from stages.geometry.arrays import Array, Indices, norm
+from stages.geometry.arrays import Array, norm
 from stages.geometry.mapped import FlatStrip, MappedEdge
 from stages.geometry.meshflat import MeshMap
-from stages.geometry.ruled import at, curvature
+from stages.geometry.ruled import at
 from stages.model.pattern import FlatPattern
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, RuledSurface
 from stages.model.tolerances import STRAIN_LIMIT
-
-ENDS = np.array([0.0, 1.0])
-"""u at both ends of a ruling."""
 
 
 def formed(run: PartRun, worst_v: float | None = None) -> Document | None:
@@ -71,7 +66,7 @@ def ruled_part(surface: RuledSurface, pattern: FlatPattern | None, worst_v: floa
         "cells": _cells(surface, shape, lines),
         "outlines": [_places(ring) for ring in trim_rings(surface, shape)],
         "lines": [{"kind": one.kind, "name": one.name, "places": _places(one.places)} for one in lines],
-        "fields": [curvature_field(surface, shape)],
+        "fields": ruled_fields(surface, shape),
     }
 
 
@@ -110,11 +105,6 @@ def flat_rails(shape: Net, pattern: FlatPattern) -> Array | None:
     return flat
 
 
-def patch_of(shape: Net) -> Indices:
-    """Return the patch of each ruling of a net."""
-    return np.concatenate([[0], np.cumsum(~shape.joined)]).astype(np.int64)
-
-
 def sagitta_mm(surface: RuledSurface, shape: Net) -> float:
     """Return how far cells are from the surface: at the rails halfway between rulings, and by their own twist."""
     patch = patch_of(shape)[:-1][shape.joined]
@@ -139,49 +129,6 @@ def _twists(rails: Array) -> Array:
     return found
 
 
-def curvature_field(surface: RuledSurface, shape: Net) -> Document:
-    """Return the curvature across the rulings at both ends of each, 1/mm, positive towards the side seen flat."""
-    patch, values = patch_of(shape), np.zeros((shape.v.size, 2))
-    for i, one in enumerate(surface.patches):
-        here = patch == i
-        local = np.clip(shape.v[here] - i, 0.0, 1.0)
-        for side, u in enumerate(ENDS):
-            values[here, side] = curvature(one, local, float(u))
-    return {
-        "name": "curvature",
-        "title": "curvature across the rulings",
-        "unit": "1/mm",
-        "limit": scale_end(middle_curvature(values)),
-        "limit_is": "a round number above the largest halfway along a ruling",
-        "evidence": "sampled",
-        "values": encoded_array(values, "<f4"),
-    }
-
-
-def middle_curvature(ends: Array) -> float:
-    """Return the largest curvature halfway along a ruling, 1/mm: along one its radius is linear."""
-    size = np.abs(ends)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        middle = 2.0 / (1.0 / size[:, 0] + 1.0 / size[:, 1])
-    known = middle[np.isfinite(middle)]
-    return float(known.max(initial=0.0))
-
-
-ROUND_NUMBERS = (1.0, 2.0, 5.0, 10.0)
-
-
-def scale_end(largest: float) -> float:
-    """Return the next of 1, 2, 5 times a power of ten above a value; 1 for none that is above rounding."""
-    if not FLAT < largest < inf:
-        return 1.0
-    power = floor(log10(largest))
-    return float(f"1e{power}") * ROUND_NUMBERS[[largest <= one * 10.0**power for one in ROUND_NUMBERS].index(True)]
-
-
-FLAT = 1e-12
-"""Largest curvature, 1/mm, that is rounding: it bends a part of ten metres by less than a tenth of a nanometre."""
-
-
 def triangles(surface: MeshSurface, flat: MeshMap | None, limit: float | None) -> Document:
     """Return a part as its triangles, its edges and cuts as chains of vertices, and the strain of its flattening.
 
@@ -198,18 +145,4 @@ def triangles(surface: MeshSurface, flat: MeshMap | None, limit: float | None) -
         "outlines": [encoded_numbers(np.append(loop, loop[:1])) for loop in surface.loops],
         "seams": [encoded_numbers(cut) for cut in cuts],
         "fields": [] if flat is None else [strain_field(surface, flat, limit)],
-    }
-
-
-def strain_field(surface: MeshSurface, flat: MeshMap, limit: float | None) -> Document:
-    """Return at every vertex the principal strain of larger size."""
-    values = vertex_strains(surface, flat)
-    return {
-        "name": "strain",
-        "title": "strain when laid flat",
-        "unit": "1",
-        "limit": limit or scale_end(float(np.abs(values).max())),
-        "limit_is": "the largest that its class allows" if limit else "a round number above the largest",
-        "evidence": "sampled",
-        "values": encoded_array(values, "<f4"),
     }

@@ -18,6 +18,7 @@ from stages.construct.openings import main_opening
 from stages.construct.plates import plate
 from stages.geometry.planarity import is_planar
 from stages.geometry.ruled import RuledPatch, size_of
+from stages.model.caps import MOST_CHORDS
 from stages.model.ducts import MainOpening
 from stages.model.faces import FaceFile
 from stages.model.material import Part
@@ -42,7 +43,7 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
         return face_surface(part, tol)
     built = patches_of(part.spec.surface, tol, part.meshes)
     size = size_of(built.patches) if built.patches else 0.0
-    findings = [*part.remarks, *built.findings, *_too_small(built.patches, size)]
+    findings = [*part.remarks, *built.findings, *_size_findings(built.patches, size, tol)]
     metrics, detail = [*built.metrics(size)], dict(built.detail)
     if built.patches and size > 0.0:
         joins = joins_of(built.patches)
@@ -56,11 +57,15 @@ def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
     return Outcome(RuledSurface(part, built.patches, size, whole_spans(len(built.patches)), features.features), report)
 
 
-def _too_small(patches: tuple[RuledPatch, ...], size: float) -> list[Finding]:
+def _size_findings(patches: tuple[RuledPatch, ...], size: float, tol: Tolerances) -> list[Finding]:
     if patches and not np.isfinite(size):
         return [Finding("not-finite", "the surface is not finite", fatal=True)]
     if patches and size == 0.0:
         return [Finding("no-extent", "all points of the surface coincide", fatal=True)]
+    if patches and size > MOST_CHORDS * tol.chord_mm:
+        message = f"the surface is {size:.3g} mm across and its contours are to be within {tol.chord_mm:g} mm"
+        cure = "check the units, or choose a coarser tolerance.chord"
+        return [Finding("too-large", f"{message}: {cure}", fatal=True, where={"size_mm": size})]
     return []
 
 

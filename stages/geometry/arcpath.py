@@ -110,8 +110,11 @@ def curvatures(path: ArcPath) -> Values:
 def lengths(path: ArcPath) -> Values:
     """Return the length of each piece in mm; exact."""
     start, end = chords(path)
+    chord: Values = norm(end - start)
+    if not path.bulges.any():
+        return chord
     half = np.abs(sweeps(path)) / 2.0
-    arc: Values = norm(end - start) / np.sinc(half / np.pi)
+    arc: Values = chord / np.sinc(half / np.pi)
     return arc
 
 
@@ -198,6 +201,11 @@ def carrier_distance(offset: Array, tangent: Array, curvature: Array) -> Array:
 def split(path: ArcPath, *, max_bulge: float) -> ArcPath:
     """Return the same path with its arcs cut into equal parts, none with a bulge above `max_bulge`; exact."""
     count = np.maximum(np.ceil(np.abs(sweeps(path)) / (4.0 * np.arctan(max_bulge)) - ROUNDING), 1.0).astype(np.int64)
+    return divided(path, count)
+
+
+def divided(path: ArcPath, count: Indices) -> ArcPath:
+    """Return the same path with every piece cut into so many equal parts; exact."""
     if (count == 1).all():
         return path
     piece = np.repeat(np.arange(count.size), count)
@@ -227,15 +235,20 @@ def backwards(path: ArcPath) -> ArcPath:
 
 def bounds(path: ArcPath) -> tuple[float, float, float, float]:
     """Return the exact extent (x least, y least, x most, y most) in mm, arcs included."""
+    every = np.concatenate([path.vertices, furthest(path)[1]]) if path.bulges.any() else path.vertices
+    (low_x, low_y), (high_x, high_y) = every.min(axis=0), every.max(axis=0)
+    return float(low_x), float(low_y), float(high_x), float(high_y)
+
+
+def furthest(path: ArcPath) -> tuple[Indices, Points2]:
+    """Return the points at which arcs are furthest out along x and y, mm, with the pieces that they lie on."""
     first, _ = directions(path)
     sweep = sweeps(path)
     # an arc is furthest out where its direction is a multiple of 90 degrees
     turn = np.where(sweep[:, None] >= 0.0, 1.0, -1.0) * (np.arange(4) * QUARTER - first[:, None])
     turn = np.mod(turn, 2.0 * np.pi)
     piece, quarter = np.nonzero(turn < np.abs(sweep)[:, None])
-    every = np.concatenate([path.vertices, along(path, piece, turn[piece, quarter] / np.abs(sweep)[piece])])
-    (low_x, low_y), (high_x, high_y) = every.min(axis=0), every.max(axis=0)
-    return float(low_x), float(low_y), float(high_x), float(high_y)
+    return piece, along(path, piece, turn[piece, quarter] / np.abs(sweep)[piece])
 
 
 def polygon(path: ArcPath, *, accuracy: float, outside: bool = False) -> Points2:

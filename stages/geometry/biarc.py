@@ -21,7 +21,7 @@ from stages.geometry.arcpath import ArcPath
 from stages.geometry.arcspline import TooSparseError, chain
 from stages.geometry.arrays import EPS, Array, Numbers, Points2, Values, norm
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
-from stages.geometry.sampling import Resolved, Samples, resolved, samples
+from stages.geometry.sampling import Resolved, Samples, not_too_large, resolved, samples
 
 LEAST_PIECE_MM = 0.05
 """Controllers stumble over shorter pieces; only edges that are shorter, or bend too tightly for it, give some."""
@@ -89,7 +89,7 @@ def trace(edges: Sequence[PlaneCurve], *, accuracy: float) -> ArcPath:
 
 def traced(edges: Sequence[PlaneCurve], accuracy: float) -> tuple[ArcPath, Numbers]:
     """Return that path, and of each of its pieces the number of the edge that it stands for."""
-    sampled = [_sampled(edge, accuracy) for edge in edges]
+    sampled = [_sampled(edge, accuracy) for edge in not_too_large(edges, accuracy)]
     numbers = [number for number, edge in enumerate(sampled) if _extent(edge) > ZERO_LENGTH_MM]
     known = [sampled[number] for number in numbers]
     if not known:

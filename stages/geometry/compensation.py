@@ -65,15 +65,19 @@ def fit(contour: ArcPath, way: ArcPath, half_mm: float) -> Fit:
     nearer = half_mm - clearance(pieces(way), pieces(contour), within=2.0 * half_mm)
     if not np.isfinite(nearer):
         return Fit(np.inf, np.inf)
-    long = np.flatnonzero(lengths(way) > LONG_HALVES * half_mm)
-    middles = along(way, long, np.full(long.size, 0.5))
-    off = np.abs(nearest(middles, contour, 2.0 * half_mm) - half_mm)
+    off = np.abs(nearest(middles(way, half_mm), contour, 2.0 * half_mm) - half_mm)
     return Fit(max(nearer, float(off.max(initial=0.0))), _most_left(contour, way, half_mm)[1])
+
+
+def middles(way: ArcPath, half_mm: float) -> Points2:
+    """Return the middles of the long pieces of a way."""
+    long = np.flatnonzero(lengths(way) > LONG_HALVES * half_mm)
+    return along(way, long, np.full(long.size, 0.5))
 
 
 def _most_left(contour: ArcPath, way: ArcPath, half_mm: float) -> tuple[Vector2, float]:
     """Return where on a contour the most is left standing, and how much, mm."""
-    places = _places(contour)
+    places = looked_at(contour)
     reach = (1.0 + 2.0 * DEEPEST_BEAMS) * half_mm
     far = nearest(places, way, 2.0 * reach)
     while not np.isfinite(far).all():
@@ -83,7 +87,7 @@ def _most_left(contour: ArcPath, way: ArcPath, half_mm: float) -> tuple[Vector2,
     return places[most], max(float(far[most]) - half_mm, 0.0)
 
 
-def _places(contour: ArcPath) -> Points2:
+def looked_at(contour: ArcPath) -> Points2:
     """Return the places of a contour at which it is measured."""
     every = np.repeat(np.arange(lengths(contour).size), len(SHARES))
     return along(contour, every, np.tile(SHARES, lengths(contour).size))

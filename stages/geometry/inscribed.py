@@ -3,7 +3,8 @@
 Points along each edge are near enough to stand for it.  From one of them a chord goes to the furthest that leaves all
 points between within the accuracy of it; then the accuracy is lowered as far as the number of chords does not rise, so
 that no short one is left over at the end [1]_.  Since edge and chord have their ends in common, every point of the
-chord is as near to the edge as the edge to the chord.  Ends of edges stay corners.
+chord is as near to the edge as the edge to the chord.  Ends of edges stay corners; edges of no length (an apex) have
+none.
 
 .. [1] H. Imai, M. Iri, "Computational-geometric methods for polygonal approximations of a curve", CVGIP 36, 1986.
 """
@@ -12,8 +13,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from stages.errors import NoSolutionError
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Numbers, Points2, norm
+from stages.geometry.biarc import ZERO_LENGTH_MM
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.sampling import dense_points, resolved
 
@@ -24,6 +27,7 @@ CHORD_SHARE = 0.95
 """What chords may use of the accuracy; the rest is for those points, and for the bound of a distance found later."""
 
 LEAST_CORNERS = 3
+NONE = np.zeros((0, 2))
 EVENINGS = 8
 """Bisections of the accuracy: after these the chords of an edge are as even as 1/256 of the accuracy makes them."""
 
@@ -32,7 +36,10 @@ FINER = 0.25
 
 
 def inscribed(edges: Sequence[PlaneCurve], *, accuracy: float) -> ArcPath:
-    """Return a closed path of chords within `accuracy` mm of the edges, both ways."""
+    """Return a closed path of chords within `accuracy` mm of the edges, both ways.
+
+    Raises NoSolutionError for edges that are all points.
+    """
     return chorded(edges, accuracy)[0]
 
 
@@ -41,12 +48,19 @@ def chorded(edges: Sequence[PlaneCurve], accuracy: float) -> tuple[ArcPath, Numb
     known = [resolved(edge, accuracy=GRID_SHARE * accuracy) for edge in edges]
     while True:
         dense = [dense_points(edge, accuracy=GRID_SHARE * accuracy) for edge in known]
-        corners = [_corners(points, CHORD_SHARE * accuracy)[:-1] for points in dense]
+        if not any(map(has_length, dense)):
+            raise NoSolutionError("a contour of points", reached=0.0, wanted=ZERO_LENGTH_MM, unit="mm")
+        corners = [_corners(points, CHORD_SHARE * accuracy)[:-1] if has_length(points) else NONE for points in dense]
         counts = [some.shape[0] for some in corners]
         if sum(counts) >= LEAST_CORNERS:
             path = ArcPath(np.concatenate(corners), np.zeros(sum(counts)), closed=True)
             return path, np.repeat(np.arange(len(edges)), counts)
         accuracy *= FINER
+
+
+def has_length(points: Points2) -> bool:
+    """Return whether points along an edge are apart."""
+    return float(norm(points - points[0]).max()) > ZERO_LENGTH_MM
 
 
 def _corners(points: Points2, accuracy: float) -> Array:

@@ -72,7 +72,7 @@ class Obstacles:
 
     def leave(self, ways: Sequence[ArcPath], own: Numbers) -> Mask:
         """Return which ways, each ending on its own contour, are off it everywhere else, on the side of its waste."""
-        some, number = _pieces([_without_end(way) for way in ways])
+        some, number = _without_ends(ways)
         one, other = self._near(some, np.full(number.size, APART_MM))
         same = self.owner[other] == own[number[one]]
         left: Mask = _least(self._distances(some, one[same], other[same]), number[one[same]], len(ways)) > APART_MM
@@ -132,10 +132,20 @@ def _least(values: Array, number: Numbers, count: int) -> Array:
     return found
 
 
-def _without_end(way: ArcPath) -> ArcPath:
-    """Return an open path without what is next to its end: the end of its last piece."""
-    last, share = way.bulges.size - 2, 1.0 - FREE_SHARE
-    vertices, bulges = way.vertices.copy(), way.bulges.copy()
-    vertices[-1] = along(way, np.array([last]), np.array([share]))[0]
+def _without_ends(ways: Sequence[ArcPath]) -> tuple[Pieces, Numbers]:
+    """Return the pieces of open paths, and the number of each piece's path, without what is next to their ends."""
+    some, number = _pieces(ways)
+    if not ways:
+        return some, number
+    last, share = np.flatnonzero(np.diff(number, append=-1)), 1.0 - FREE_SHARE
+    ends, bulges = some.end.copy(), some.bulge.copy()
+    ends[last] = along(_in_a_row(some.take(last)), 2 * np.arange(last.size), np.full(last.size, share))
     bulges[last] = np.tan(np.arctan(bulges[last]) * share)
-    return ArcPath(vertices, bulges, closed=False)
+    return between(some.start, ends, bulges), number
+
+
+def _in_a_row(some: Pieces) -> ArcPath:
+    """Return a path of the pieces and straight ways from each to the next: piece i is the one of number 2 i."""
+    corners = np.stack([some.start, some.end], axis=1).reshape(-1, 2)
+    bulges = np.stack([some.bulge, np.zeros_like(some.bulge)], axis=1).ravel()
+    return ArcPath(corners, bulges, closed=False)

@@ -155,8 +155,9 @@ ON_ARC = 1e-9
 def linked(knots: Array, rail_a: Rail, rail_b: Rail) -> Link:
     """Return the arc with these knots, which lie in one piece of each rail."""
     i, j = (int(np.floor(knots[:, axis].mean())) for axis in (0, 1))
-    if (np.abs(knots - np.array([i, j]) - MIDDLE) > MIDDLE + TINY).any():
-        raise ValueError("an arc must lie in one piece of each rail")
+    beyond = float(np.max(np.abs(knots - np.array([i, j]) - MIDDLE))) - MIDDLE
+    if not beyond <= TINY:
+        raise NoSolutionError("an arc of a path in one piece of each rail", reached=beyond, wanted=TINY)
     t, s = np.clip(knots[:, 0] - i, 0.0, 1.0), np.clip(knots[:, 1] - j, 0.0, 1.0)
     w = t + s
     kept = np.append(True, np.diff(w) > TINY)

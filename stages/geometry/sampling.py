@@ -33,6 +33,9 @@ FINE_PARTS = 16
 LEAST_INTERVAL = 1e-14
 """No interval of t is cut below this: the doubles near t = 1 are 1e-16 apart."""
 
+MOST_NODES = 30_000
+"""A grid of more stands for no edge that is cut: a circle of 100 m takes 5000 at a chord of 0.01 mm."""
+
 VANISHED = 1e-9
 """A derivative below this share of the curve's size has lost its direction to rounding."""
 
@@ -127,10 +130,23 @@ def _gauss(edge: PlaneCurve, breaks: Values, nodes: int, middle: Array) -> Array
     return np.array([weight @ norm(slopes), weight @ cross2(points, slopes) / 2.0])
 
 
+def not_too_large(edges: Sequence[PlaneCurve], accuracy: float) -> Sequence[PlaneCurve]:
+    """Return the edges of a contour; `NoSolutionError` where it is absurdly large, before it is sampled finely."""
+    size = float(np.max(np.ptp(np.concatenate([edge.at(FEW) for edge in edges]), axis=0)))
+    if size > MOST_ACCURACIES * accuracy:
+        raise NoSolutionError("the size of a contour", reached=size, wanted=MOST_ACCURACIES * accuracy, unit="mm")
+    return edges
+
+
+FEW = np.linspace(0.0, 1.0, 9)
+MOST_ACCURACIES = 1e8
+"""A circle of that size takes 20 000 chords; what is larger is not cut, or not as exactly as it is asked for."""
+
+
 def resolved(curve: PlaneCurve, *, accuracy: float) -> Resolved:
     """Return a grid whose Hermite curve is within `accuracy` mm of the exact one half-way in each interval.
 
-    Raises NoSolutionError if the curve jumps.
+    Raises NoSolutionError if the curve jumps, or takes more than `MOST_NODES`.
     """
     grid = _nodes(curve, np.linspace(0.0, 1.0, FIRST_INTERVALS + 1))
     unsettled = np.ones(FIRST_INTERVALS, dtype=bool)
@@ -150,10 +166,13 @@ def _refined(
     fraction = np.arange(1, parts) / parts
     width = np.diff(grid.t)[which]
     fresh = _nodes(curve, (grid.t[which][:, None] + width[:, None] * fraction).ravel())
-    wrong = _hermite_error(grid, which, fresh, parts) > accuracy
+    error = _hermite_error(grid, which, fresh, parts)
+    wrong = error > accuracy
     if (wrong & (width < LEAST_INTERVAL * parts)).any():
         gap = float(np.max(norm(np.diff(grid.points, axis=0))[which][wrong & (width < LEAST_INTERVAL * parts)]))
         raise NoSolutionError("an edge that jumps", reached=gap, wanted=accuracy, unit="mm")
+    if wrong.any() and grid.t.size > MOST_NODES:
+        raise NoSolutionError("points along an edge", reached=float(error.max()), wanted=accuracy, unit="mm")
     place = np.repeat(which + 1, parts - 1)
     merged = Resolved(
         curve,

@@ -23,6 +23,11 @@ CORNER_RAD = np.radians(5.0)
 Span = tuple[float, float, bool]
 """Where the middle of a gap may be, from and to along the path, mm, and whether on a line."""
 
+Near = tuple[float, float]
+"""A place along the path, and how far it is from the one that was wanted, mm."""
+
+NOWHERE: Near = (0.0, float("inf"))
+
 
 @dataclass(frozen=True, slots=True)
 class Wish:
@@ -46,7 +51,10 @@ class Gaps:
 def gaps(path: ArcPath, wish: Wish, avoid: Points2) -> Gaps:
     """Return where the gaps of a closed path are to be."""
     spans, long = _spans(path, wish, avoid), float(lengths(path).sum())
-    tried = [_placed(spans, long, wish, phase / PHASES) for phase in range(PHASES)]
+    step = long / wish.count
+    targets = step * (np.arange(PHASES)[:, None] / PHASES + np.arange(wish.count))
+    lines, arcs = (_nearest(spans, targets, long, straight=straight) for straight in (True, False))
+    tried = [_placed(list(zip(*rows, strict=True)), long, wish) for rows in zip(lines, arcs, strict=True)]
     _, best = min(((score, phase) for phase, (score, _) in enumerate(tried)), key=lambda item: item)
     return tried[best][1]
 
@@ -101,12 +109,14 @@ def _beside(path: ArcPath, avoid: Points2, reach: float) -> Array:
     return found
 
 
-def _placed(spans: Sequence[Span], long: float, wish: Wish, phase: float) -> tuple[tuple[int, int, float], Gaps]:
-    """Return the gaps of one turn, and what stands against it: how many are missing, how many on arcs, how uneven."""
+def _placed(row: Sequence[tuple[Near, Near]], long: float, wish: Wish) -> tuple[tuple[int, int, float], Gaps]:
+    """Return the gaps of one turn, and what stands against it: how many are missing, how many on arcs, how uneven.
+
+    row: of each target the nearest place on a line, and that on an arc.
+    """
     step = long / wish.count
     middles, arcs, uneven = list[float](), 0, 0.0
-    for target in (step * (number + phase) for number in range(wish.count)):
-        line, arc = (_nearest(spans, target, long, straight=straight) for straight in (True, False))
+    for line, arc in row:
         at, away = line if line[1] <= step / 4.0 or line[1] <= arc[1] else arc
         if away > step / 2.0 or _is_taken(at, middles, long, wish):
             continue
@@ -123,12 +133,14 @@ def _is_taken(at: float, middles: Sequence[float], long: float, wish: Wish) -> b
     return any(min(away, long - away) < wish.gap_mm + wish.least_mm for away in apart)
 
 
-def _nearest(spans: Sequence[Span], target: float, long: float, *, straight: bool) -> tuple[float, float]:
-    """Return the place of that sort nearest to a target, once round, and how far it is."""
+def _nearest(spans: Sequence[Span], targets: Array, long: float, *, straight: bool) -> list[list[Near]]:
+    """Return the place of that sort nearest to each target, once round, in rows as the targets are."""
     some: Array = np.array([(low, high) for low, high, on_line in spans if on_line == straight]).reshape(-1, 2)
     if some.shape[0] == 0:
-        return 0.0, np.inf
+        return [[NOWHERE] * targets.shape[1]] * targets.shape[0]
     every = np.concatenate([some - long, some, some + long])
-    places = np.clip(target, every[:, 0], every[:, 1])
-    best = int(np.abs(places - target).argmin())
-    return float(places[best]) % long, float(np.abs(places[best] - target))
+    places = np.clip(targets[..., None], every[:, 0], every[:, 1])
+    far = np.abs(places - targets[..., None])
+    best = far.argmin(axis=-1)[..., None]
+    at, away = (np.take_along_axis(one, best, axis=-1)[..., 0].tolist() for one in (places, far))
+    return [[(place % long, off) for place, off in zip(*rows, strict=True)] for rows in zip(at, away, strict=True)]

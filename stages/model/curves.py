@@ -12,6 +12,7 @@ from typing import Annotated, NamedTuple
 from msgspec import Meta, Struct, field
 from msgspec.structs import replace
 
+from stages.model.caps import LARGEST_MM, MOST_PIECES, MOST_POINTS
 from stages.model.scalars import Angle, Coordinate, Direction, Length, Number, coordinate, is_zero
 
 PlanePoint = Annotated[tuple[Coordinate, ...], Meta(min_length=2, max_length=3)]
@@ -54,9 +55,9 @@ class BSplineSpec(Table, frozen=True, kw_only=True):
     """A B-spline: knots in full (count = points + degree + 1), weights for a rational one."""
 
     degree: Annotated[int, Meta(ge=1, le=15)]
-    knots: tuple[Number, ...]
-    points: Annotated[tuple[PlanePoint, ...], Meta(min_length=2)]
-    weights: tuple[Number, ...] | None = None
+    knots: Annotated[tuple[Number, ...], Meta(max_length=2 * MOST_POINTS)]
+    points: Annotated[tuple[PlanePoint, ...], Meta(min_length=2, max_length=MOST_POINTS)]
+    weights: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS)] | None = None
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield what is wrong with counts, order of knots and weights."""
@@ -141,8 +142,8 @@ class HelixSpec(Table, frozen=True, kw_only=True):
             yield Trouble("turns", f"{float(self.turns):g}", f"at most {MOST_TURNS} turns")
 
 
-MOST_TURNS = 1000
-"""More turns than any sheet takes; each costs as much as a curve of its own."""
+MOST_TURNS = 50
+"""A blank of one turn overlaps itself; twenty take some ten seconds, and their cost grows faster than their number."""
 
 
 class CurveSpec(Table, frozen=True, kw_only=True, omit_defaults=True):
@@ -155,16 +156,16 @@ class CurveSpec(Table, frozen=True, kw_only=True, omit_defaults=True):
 
     bezier: Annotated[tuple[PlanePoint, ...], Meta(min_length=2, max_length=16)] | None = None
     bspline: BSplineSpec | None = None
-    points: Annotated[tuple[PlanePoint, ...], Meta(min_length=3)] | None = None
-    polyline: Annotated[tuple[PlanePoint, ...], Meta(min_length=2)] | None = None
+    points: Annotated[tuple[PlanePoint, ...], Meta(min_length=3, max_length=MOST_POINTS)] | None = None
+    polyline: Annotated[tuple[PlanePoint, ...], Meta(min_length=2, max_length=MOST_POINTS)] | None = None
     line: tuple[PlanePoint, PlanePoint] | None = None
     arc: ArcSpec | None = None
     circle: CircleSpec | None = None
     ellipse: EllipseSpec | None = None
     helix: HelixSpec | None = None
-    chain: "Annotated[tuple[CurveSpec, ...], Meta(min_length=1)] | None" = None
-    file: str | None = None
-    layer: str | None = None
+    chain: "Annotated[tuple[CurveSpec, ...], Meta(min_length=1, max_length=MOST_PIECES)] | None" = None
+    file: Annotated[str, Meta(max_length=500)] | None = None
+    layer: Annotated[str, Meta(max_length=255)] | None = None
 
     def sorts(self) -> list[str]:
         """Return the keys that are given, `layer` apart."""
@@ -188,6 +189,11 @@ class CurveSpec(Table, frozen=True, kw_only=True, omit_defaults=True):
 
 
 CURVE_KEYS = ("bezier", "bspline", "points", "polyline", "line", "arc", "circle", "ellipse", "helix", "chain", "file")
+
+
+def is_whole(curve: CurveSpec) -> bool:
+    """Return whether there is a curve: one of one sort, and no reference to a file that was not read."""
+    return len(curve.sorts()) == 1 and curve.file is None and all(is_whole(part) for part in curve.chain or ())
 
 
 def is_flat(curve: CurveSpec) -> bool:
@@ -214,12 +220,26 @@ def dimensions(curve: CurveSpec) -> set[int]:
 
 def coordinates(value: object) -> Iterator[Coordinate]:
     """Yield all coordinates in a curve, or in a part of its data."""
-    if isinstance(value, Coordinate):
+    yield from (length for length in lengths(value) if isinstance(length, Coordinate))
+
+
+def lengths(value: object) -> Iterator[Length]:
+    """Yield all lengths in a table, or in a part of its data, coordinates among them."""
+    if isinstance(value, Length):
         yield value
     elif isinstance(value, tuple):
-        yield from (inner for item in value for inner in coordinates(item))
+        yield from (inner for item in value for inner in lengths(item))
     elif isinstance(value, Struct):
-        yield from (inner for key in value.__struct_fields__ for inner in coordinates(getattr(value, key)))
+        yield from (inner for key in value.__struct_fields__ for inner in lengths(getattr(value, key)))
+
+
+def absurd_lengths(surface: Table) -> Iterator[Trouble]:
+    """Yield the keys of a surface with a length or a coordinate beyond a kilometre."""
+    for key, name in zip(surface.__struct_fields__, surface.__struct_encode_fields__, strict=True):
+        largest = max((abs(length) for length in lengths(getattr(surface, key))), default=0)
+        if largest > LARGEST_MM:
+            message = f"{float(largest):.6g} mm: nothing that is cut is larger than a kilometre"
+            yield Trouble(f"surface.{name}", message, "check the units; shift coordinates that are far from 0")
 
 
 def in_numbers(curve: CurveSpec) -> CurveSpec:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
+from stages.model.caps import MOST_POINTS
 from stages.model.curves import CurveSpec, Table, Trouble, not_positive, plane_curves
 from stages.model.meshes import MeshNormals
 from stages.model.scalars import Direction, Length, is_zero
@@ -36,7 +37,7 @@ class Ribbon(Table, frozen=True, kw_only=True, tag_field="kind", tag="ribbon"):
     """
 
     curve: CurveSpec
-    normals: Annotated[tuple[Direction, ...], Meta(min_length=2)] | MeshNormals
+    normals: Annotated[tuple[Direction, ...], Meta(min_length=2, max_length=MOST_POINTS)] | MeshNormals
     width: Length | None = None
     widths: tuple[Length, Length] | None = None
 

@@ -18,7 +18,7 @@ class FaceFile(Table, frozen=True, kw_only=True, tag_field="kind", tag="face"):
     all: every face; those that join smoothly along straight edges make one blank.
     """
 
-    file: Annotated[str, Meta(min_length=1)]
+    file: Annotated[str, Meta(min_length=1, max_length=500)]
     index: Annotated[int, Meta(ge=0)] | None = None
     all: bool = False
 

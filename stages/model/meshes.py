@@ -5,11 +5,12 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from stages.model.caps import MOST_PIECES, MOST_POINTS
 from stages.model.curves import Table, Trouble
 from stages.model.scalars import Point
 
 MeshUnit = Literal["mm", "cm", "m", "um", "in", "ft"]
-Polyline = Annotated[tuple[Point, ...], Meta(min_length=2)]
+Polyline = Annotated[tuple[Point, ...], Meta(min_length=2, max_length=MOST_POINTS)]
 
 
 class MeshFile(Table, frozen=True, kw_only=True, tag_field="kind", tag="mesh"):
@@ -27,8 +28,8 @@ class MeshFile(Table, frozen=True, kw_only=True, tag_field="kind", tag="mesh"):
     units: MeshUnit | None = None
     recognise: bool = True
     seam: Polyline | None = None
-    keep: Literal["none", "outline"] | tuple[Polyline, ...] = "none"
-    cuts: tuple[Polyline, ...] = ()
+    keep: Literal["none", "outline"] | Annotated[tuple[Polyline, ...], Meta(max_length=MOST_PIECES)] = "none"
+    cuts: Annotated[tuple[Polyline, ...], Meta(max_length=MOST_PIECES)] = ()
 
     @property
     def kept_lines(self) -> tuple[tuple[Point, ...], ...]:

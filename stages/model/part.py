@@ -11,7 +11,8 @@ from typing import Annotated, Literal, get_args
 from msgspec import Meta, field
 from msgspec.structs import replace
 
-from stages.model.curves import CurveSpec, Table, Trouble, plane_curves
+from stages.model.caps import MOST_ANGLES, MOST_FEATURES, MOST_PIECES
+from stages.model.curves import CurveSpec, Table, Trouble, absurd_lengths, plane_curves
 from stages.model.developables import BezierPair, Slope, Tangent
 from stages.model.ducts import Elbow, Saddle, Tee, Transition, is_set
 from stages.model.envelopes import Ribbon, Strap
@@ -45,7 +46,7 @@ class Flat(Table, frozen=True, kw_only=True, tag_field="kind", tag="flat"):
     """A plate: a closed planar outline, and holes."""
 
     outline: CurveSpec
-    holes: tuple[CurveSpec, ...] = ()
+    holes: Annotated[tuple[CurveSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
 
 
 class Plane(Table, frozen=True, kw_only=True):
@@ -180,7 +181,7 @@ PieceSpec = (
 class Strip(Table, frozen=True, kw_only=True, tag_field="kind", tag="strip"):
     """Surfaces of other kinds joined along their end rulings; each is turned such that it joins the one before."""
 
-    pieces: Annotated[tuple[PieceSpec, ...], Meta(min_length=1)]
+    pieces: Annotated[tuple[PieceSpec, ...], Meta(min_length=1, max_length=MOST_PIECES)]
 
 
 SurfaceSpec = PieceSpec | Strip | Flat | Elbow | Tee | FaceFile | MeshFile
@@ -211,22 +212,23 @@ class PartSpec(Table, frozen=True, kw_only=True):
     surface: SurfaceSpec
     quantity: Annotated[int, Meta(ge=1, le=100_000)] = 1
     face: Face = "middle"
-    rotations: Literal["free"] | tuple[Angle, ...] | None = None
+    rotations: Literal["free"] | Annotated[tuple[Angle, ...], Meta(max_length=MOST_ANGLES)] | None = None
     grain: Angle | None = None
     grain_band: Angle = field(default_factory=Angle)
     stretch_axis: Angle | None = None
     quality: Quality = "best"
     pair: bool = False
     cut: Literal["none", "auto"] = "none"
-    hole: tuple[HoleSpec, ...] = ()
-    mark: tuple[MarkSpec, ...] = ()
-    notch: tuple[NotchSpec, ...] = ()
-    bend: tuple[BendSpec, ...] = ()
-    seam: tuple[SeamSpec, ...] = ()
-    stitch: tuple[StitchSpec, ...] = ()
+    hole: Annotated[tuple[HoleSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
+    mark: Annotated[tuple[MarkSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
+    notch: Annotated[tuple[NotchSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
+    bend: Annotated[tuple[BendSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
+    seam: Annotated[tuple[SeamSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
+    stitch: Annotated[tuple[StitchSpec, ...], Meta(max_length=MOST_FEATURES)] = ()
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield what holes, marks and notches break on this kind of surface."""
+        yield from absurd_lengths(self.surface)
         ground = _ground(self.surface)
         yield from feature_troubles(self.hole, self.mark, self.notch, on=ground)
         yield from seam_troubles(self.seam, self.stitch, self.notch, sides=_sides(ground))

@@ -82,7 +82,7 @@ class NotchPlace(ArrayValue):
     """A notch: where it is on the edge that is cut, as that was before, and the unit vector into the part.
 
     in_outline: whether its shape is part of the outer contour; else it is lines on MARK or CUT_SLIT of its name.
-    spot: where that is on the outline without notches.
+    spot: where that is on the outline without notches.  is_cut: whether it is cut, or only marked.
     """
 
     name: str
@@ -93,6 +93,7 @@ class NotchPlace(ArrayValue):
     width_mm: float
     in_outline: bool
     spot: Spot
+    is_cut: bool = True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +103,7 @@ class Drill(ArrayValue):
     name: str
     at: Vector2
     diameter_mm: float
+    purpose: Purpose = "drill"
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from msgspec import Meta, field
 
+from stages.model.caps import MOST_PIECES
 from stages.model.curves import Table, Trouble
 from stages.model.quintics import (
     QuinticCone,
@@ -79,8 +80,8 @@ class QuinticStrip(Table, frozen=True, kw_only=True, tag_field="kind", tag="quin
     """
 
     first: QuinticCylinder | QuinticCone | QuinticRuled | QuinticPlanar | None = None
-    next: Annotated[tuple[NextPatch, ...], Meta(min_length=1)] | None = None
-    through: Annotated[tuple[Station, ...], Meta(min_length=2)] | None = None
+    next: Annotated[tuple[NextPatch, ...], Meta(min_length=1, max_length=MOST_PIECES)] | None = None
+    through: Annotated[tuple[Station, ...], Meta(min_length=2, max_length=MOST_PIECES)] | None = None
     ruling: Point | None = None
     apex: Point | None = None
     fraction: tuple[Number, Number] | None = None

@@ -38,6 +38,12 @@ class Metric:
             return self.value == self.limit
         return self.value <= self.limit
 
+    @property
+    def margin(self) -> float | None:
+        """Return the limit less the value, in `unit`; None where one of them is no number."""
+        numbers = [one for one in (self.limit, self.value) if one is not None and not isinstance(one, bool)]
+        return numbers[0] - numbers[1] if len(numbers) == len(("limit", "value")) else None
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:

@@ -45,7 +45,7 @@ def layers(face: Face, bends: Turning, thickness_mm: float) -> Layers | Finding:
     """Return where the sheet lies, or the finding that the surface has no inner and outer face."""
     towards = sum(stretch.angle_rad for stretch in bends.stretches) >= 0.0
     both = bends_both_ways(bends) if face in ("inner", "outer") else None
-    return _about(face, thickness_mm, towards=towards) if both is None else both
+    return about(face, thickness_mm, towards=towards) if both is None else both
 
 
 def mesh_layers(face: Face, bends: MeshBends, thickness_mm: float) -> Layers | Finding:
@@ -59,15 +59,15 @@ def mesh_layers(face: Face, bends: MeshBends, thickness_mm: float) -> Layers | F
             f'({x:.6g}, {y:.6g}, {z:.6g}); face = "plus" or "minus" names the side of its normals'
         )
         return Finding("face-changes-side", message, True, {"x": x, "y": y, "z": z})
-    return _about(face, thickness_mm, towards=towards >= away)
+    return about(face, thickness_mm, towards=towards >= away)
 
 
 LITTLE = 0.02
 """Share of the bending of a mesh that may go the other way: errors of its fitted curvatures do."""
 
 
-def _about(face: Face, thickness_mm: float, *, towards: bool) -> Layers:
-    """Return where the sheet lies; towards: whether the surface bends towards N."""
+def about(face: Face, thickness_mm: float, *, towards: bool) -> Layers:
+    """Return where the sheet lies about a surface that has both faces; towards: whether it bends towards N."""
     side = face if face not in ("inner", "outer") else "plus" if (face == "inner") == towards else "minus"
     low = {"middle": -0.5, "plus": -1.0, "minus": 0.0}[side] * thickness_mm
     return Layers(low, low + thickness_mm)

@@ -2,13 +2,14 @@
 
 A notch that encloses an area takes `width` of the outline, measured along it, half on each side of its place, and puts
 its own sides there in its stead (`notchshapes`), `depth` into the part, across the edge at the place.  The outline
-runs counter-clockwise, so the part lies on its left.
+runs counter-clockwise, so the part lies on its left.  It has a beginning, and no end: edges are counted on beyond the
+last one, into the next round, and back from the first into the one before.
 
 A part with seams is cut along its allowances: its notches are placed here and cut there (`sewing`).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -30,7 +31,10 @@ from stages.unroll.notchshapes import Opening, lines, sides
 
 @dataclass(frozen=True, slots=True)
 class Notch:
-    """A notch on an outline: its spot, and the first and last edge (exclusive) of the side that it has to stay on."""
+    """A notch on an outline: its spot, and the first and last edge (exclusive) of the side that it has to stay on.
+
+    The side may begin in the round before, or end in the next.
+    """
 
     name: str
     spec: NotchSpec
@@ -99,7 +103,7 @@ def cut_into(outer: Contour, notches: Sequence[Notch]) -> Notched:
     found = sorted(cuts, key=lambda cut: cut.low)
     findings += tuple(
         Finding("notches-overlap", f"{b.name} begins before {a.name} has ended", fatal=True, where={"feature": b.name})
-        for a, b in pairwise(found)
+        for a, b in pairwise([*found, *(next_round(one, len(outer.edges)) for one in found[:1])])
         if b.low < a.high
     )
     if findings or not found:
@@ -120,19 +124,27 @@ def _is_edge(notch: Notch) -> bool:
 def _place(outer: Contour, notch: Notch) -> NotchPlace:
     point, inward = frame(outer.edges, notch.spot)
     spec = notch.spec
-    return NotchPlace(
-        notch.name, spec.kind, point, inward, float(spec.depth), float(spec.width), _is_edge(notch), notch.spot
-    )
+    sizes = float(spec.depth), float(spec.width)
+    return NotchPlace(notch.name, spec.kind, point, inward, *sizes, _is_edge(notch), notch.spot, spec.is_cut)
 
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """A stretch of the outline, from `low` to `high`, that the sides of a notch take the place of."""
+    """A stretch of the outline, from `low` to `high`, that the sides of a notch take the place of.
+
+    It begins in the first round; across the beginning of the outline it ends in the next.
+    """
 
     name: str
     low: Spot
     high: Spot
     sides: tuple[PlaneCurve, ...]
+
+
+def next_round(cut: Cut, edges: int) -> Cut:
+    """Return the same stretch in the next round of an outline of so many edges."""
+    low, high = ((number + edges, t) for number, t in (cut.low, cut.high))
+    return replace(cut, low=low, high=high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,18 +161,28 @@ def _opened(outer: Contour, notch: Notch) -> Opened | Finding:
     point, inward = frame(outer.edges, notch.spot)
     if notch.spec.kind not in OUTLINED:
         return Opened(notch.spot, notch.spot, Opening(point, inward, point, point))
-    first, last = notch.side
-    speeds = [speed_of(edge) for edge in outer.edges[first:last]]
-    index, t = notch.spot
+    count, (first, last) = len(outer.edges), notch.side
+    half = float(notch.spec.width) / 2.0
+    rounds = [0, -count, count] if last - first == count else [0]
+    tried = (_ends(outer.edges, notch.spot, (min(first, first + by), max(last, last + by)), half) for by in rounds)
+    ends = next((one for one in tried if one is not None), None)
+    if ends is None:
+        return _off(notch.name, f"{2.0 * half:g} mm wide, it passes an end of its edge")
+    start, end = (outer.edges[edge % count].at(np.array([at]))[0] for edge, at in ends)
+    (low, t), (high, s) = ends
+    begin = low % count
+    return Opened((begin, t), (high - low + begin, s), Opening(point, inward, start, end))
+
+
+def _ends(edges: Sequence[PlaneCurve], spot: Spot, side: tuple[int, int], half: float) -> tuple[Spot, Spot] | None:
+    """Return what lies `half` mm along a side of the outline before a spot, and behind it; None beyond its ends."""
+    first, last = side
+    speeds = [speed_of(edges[number % len(edges)]) for number in range(first, last)]
+    index, t = spot
     before = sum(length_between(speed, 0.0, 1.0) for speed in speeds[: index - first])
     place = before + length_between(speeds[index - first], 0.0, t)
-    half = float(notch.spec.width) / 2.0
     low, high = reached(speeds, place - half), reached(speeds, place + half)
-    if low is None or high is None:
-        return _off(notch.name, f"{2.0 * half:g} mm wide at {place:.6g} mm, it passes the end of its edge")
-    ends = ((low[0] + first, low[1]), (high[0] + first, high[1]))
-    start, end = (outer.edges[edge].at(np.array([at]))[0] for edge, at in ends)
-    return Opened(*ends, Opening(point, inward, start, end))
+    return None if low is None or high is None else ((low[0] + first, low[1]), (high[0] + first, high[1]))
 
 
 def _lines(notch: Notch, opened: Opened, chord_mm: float) -> list[Mark]:
@@ -190,14 +212,16 @@ BESIDE = 1e-6
 
 
 def _edges(edges: Sequence[PlaneCurve], cuts: Sequence[Cut]) -> tuple[PlaneCurve, ...]:
-    """Return the outline with its cuts, which are in order and apart."""
+    """Return the outline with its cuts, which are in order and apart; it begins behind one across its beginning."""
     made: list[PlaneCurve] = []
-    here: Spot = (0, 0.0)
+    over, t = cuts[-1].high
+    across = over >= len(edges)
+    here: Spot = (over - len(edges), t) if across else (0, 0.0)
     for cut in cuts:
         made += _between(edges, here, cut.low)
         made += cut.sides
         here = cut.high
-    return (*made, *_between(edges, here, (len(edges) - 1, 1.0)))
+    return tuple(made) if across else (*made, *_between(edges, here, (len(edges) - 1, 1.0)))
 
 
 def _between(edges: Sequence[PlaneCurve], start: Spot, end: Spot) -> list[PlaneCurve]:

@@ -206,14 +206,15 @@ def _placed(asked: Asked, known: Seams, wide: Widened) -> Notch | Finding:
 
 
 def _side(i: int, line: Line | None, strips: Sequence[Strip | None]) -> tuple[int, int]:
-    """Return the run of contour edges about one that are strips of the same seam."""
+    """Return the run of contour edges about one that are strips of the same seam, across the beginning too."""
 
     def same(k: int) -> bool:
         strip = strips[k]
         return strip is not None and (k == i or (line is not None and strip.edge in line.numbers))
 
-    first = next((k + 1 for k in range(i, -1, -1) if not same(k)), 0)
-    last = next((k for k in range(i, len(strips)) if not same(k)), len(strips))
+    count = len(strips)
+    first = next((k + 1 for k in range(i, i - count, -1) if not same(k % count)), i + 1 - count)
+    last = next((k for k in range(i, i + count) if not same(k % count)), i + count)
     return first, last
 
 

@@ -20,6 +20,7 @@ from stages.geometry.outside import beyond
 from stages.geometry.sampling import Resolved, length_and_area, resolved
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
+from stages.write.alike import is_alike
 from stages.write.chains import JOINT_MM, Entity
 from stages.write.closing import MEET_MM, Closed, is_shared
 from stages.write.drawing import Drawing, Item, Label
@@ -231,6 +232,8 @@ def _unlike_labels(back: ReadFile, labels: Sequence[Label]) -> Iterator[str]:
 def _sizes(entity: Entity, found: ArcPath, drawn: ArcPath) -> Iterator[str]:
     """Yield a place, a length or an area that did not survive; a circle's direction does not."""
     near = ROUND_TRIP_MM if entity.kind not in SINGLE_PIECES else JOINT_MM
+    if is_alike(found, drawn, near):
+        return
     moved = float(np.abs(np.subtract(bounds(found), bounds(drawn))).max())
     if moved > near:
         yield f"{entity.kind} on {entity.layer} lies {moved:.3g} mm from where it was drawn"

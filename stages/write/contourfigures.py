@@ -1,4 +1,4 @@
-"""What each contour and each layer of a file comes to, measured on the file as it reads.
+"""What each contour and each layer of a file comes to, measured on the file as it reads; of a part also its marks.
 
 Which contour is which is known from the drawing, whose paths the file holds in the same order; areas and lengths are
 those of what was read.
@@ -13,6 +13,7 @@ from stages.write.drawing import Drawing, Item
 from stages.write.readback import ReadFile
 
 CUT = "CUT_"
+FLAT = "flat/"
 Row = dict[str, object]
 
 
@@ -22,7 +23,12 @@ def measured_file(back: ReadFile, drawing: Drawing, layers: Mapping[str, Layer])
     pairs = list(zip(paths, drawing.items, strict=True))
     rows = [_row(entity, item) for entity, item in pairs if item.layer.startswith(CUT)]
     names = dict.fromkeys([*(entity.layer for entity in paths), *(label.layer for label in drawing.labels)])
-    return {"contours": rows, "layers": {name: _layer(name, layers[name], paths) for name in names}}
+    marks = [{"name": item.name, "layer": item.layer} for _, item in pairs if item.contour is None]
+    return {
+        "contours": rows,
+        "layers": {name: _layer(name, layers[name], paths) for name in names},
+        "marks": marks if drawing.path.startswith(FLAT) else [],
+    }
 
 
 def _row(entity: Entity, item: Item) -> Row:
@@ -36,6 +42,8 @@ def _row(entity: Entity, item: Item) -> Row:
         "contour": item.contour,
         "name": item.name,
         "layer": item.layer,
+        "purpose": item.purpose,
+        "circle": None if item.drill is None else [*item.drill.at.tolist(), item.drill.diameter_mm],
         "area_mm2": abs(area(path)) if path.closed else None,
         "length_mm": length(path),
         "box": list(bounds(path)),

@@ -16,7 +16,7 @@ from stages.geometry.arrays import ArrayValue, Vector2
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
 from stages.model.helps import Helps
-from stages.model.pattern import LETTER_WIDTH, FlatPattern, Text
+from stages.model.pattern import LETTER_WIDTH, Contour, Drill, FlatPattern, Purpose, Text
 from stages.model.report import Finding
 from stages.model.sheet import SheetLayout
 from stages.model.strokes import Stroke, seen_from_below, strokes, turned_over
@@ -25,6 +25,7 @@ from stages.write.commonlines import in_turn, shared_cuts
 from stages.write.flavours import as_written
 from stages.write.onpart import on_part, region_of
 from stages.write.strokefont import lettering, reach
+from stages.write.tracing import drill_of
 
 LABEL_MOST_MM = 10.0
 LABEL_LEAST_MM = 0.1
@@ -46,6 +47,7 @@ class Item:
 
     name: of the mark or hole, if it has one.  copy: which copy of the part on a sheet; 0 where there is but one.
     begun: it counts where it begins.  nominal: the contour that it lies half a kerf beside, if it does.
+    purpose: of a contour.  drill: of a round hole that is drilled or stitched through, where it lies.
     """
 
     layer: str
@@ -56,6 +58,8 @@ class Item:
     copy: int = 0
     begun: bool = False
     nominal: ArcPath | None = None
+    purpose: Purpose | None = None
+    drill: Drill | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,9 +164,24 @@ def rectangle(width_mm: float, height_mm: float, x: float = 0.0, y: float = 0.0)
 
 def extent(paths: Iterable[ArcPath]) -> tuple[float, float, float, float]:
     """Return the exact extent of all paths (x least, y least, x most, y most) in mm."""
-    every = np.array([bounds(path) for path in paths])
-    low, high = every[:, :2].min(axis=0), every[:, 2:].max(axis=0)
-    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+    every = list(paths)
+    corners = np.concatenate([path.vertices for path in every])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    boxes = [np.reshape(bounds(path), (2, 2)) for path in every if path.bulges.any() and _swells(path, low, high)]
+    reached = np.concatenate([np.stack([low, high]), *boxes])
+    (low_x, low_y), (high_x, high_y) = reached.min(axis=0), reached.max(axis=0)
+    return float(low_x), float(low_y), float(high_x), float(high_y)
+
+
+def _swells(path: ArcPath, low: Vector2, high: Vector2) -> bool:
+    """Return whether the arcs of a path may reach out of a box: an arc rises over its chord by bulge times half of it.
+
+    One of more than half a circle may in any case.
+    """
+    least, most = path.vertices.min(axis=0), path.vertices.max(axis=0)
+    steepest = float(np.abs(path.bulges).max())
+    rise = steepest * float(np.hypot(*(most - least))) / 2.0
+    return steepest > 1.0 or bool((least - rise < low).any() or (most + rise > high).any())
 
 
 def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
@@ -172,11 +191,18 @@ def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]
     def moved(stroke: Stroke) -> Item:
         path = transform(split(stroke.path, max_bulge=machine.max_bulge), motion)
         layer = seen_from_below(stroke.layer) if turned_over(pattern, motion) else stroke.layer
-        nominal = None if stroke.contour is None else contours[stroke.contour].nominal
-        beside = None if nominal is None else transform(nominal, motion)
-        return Item(layer, pattern.part, path, stroke.contour, stroke.name, nominal=beside)
+        item = Item(layer, pattern.part, path, stroke.contour, stroke.name)
+        return item if stroke.contour is None else _of_contour(item, contours[stroke.contour], motion)
 
     return [*_engraved(pattern, motion, machine), *(moved(stroke) for stroke in strokes(pattern))]
+
+
+def _of_contour(item: Item, contour: Contour, motion: Rigid2) -> Item:
+    """Return the item of a contour with what the contour is for."""
+    beside = None if contour.nominal is None else transform(contour.nominal, motion)
+    drill = drill_of(contour)
+    there = None if drill is None else drill.replace(at=apply(motion, drill.at[None, :])[0])
+    return replace(item, nominal=beside, purpose=contour.purpose, drill=there)
 
 
 def _engraved(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
@@ -225,8 +251,12 @@ def _label_height(pattern: FlatPattern) -> float:
 
 def room(pattern: FlatPattern) -> float:
     """Return how far the label's place is from all contours, mm."""
-    paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
-    return min(_distance(pattern.label_at, split(path, max_bulge=QUARTER_BULGE)) for path in paths)
+    return clear_mm(pattern.label_at, [contour.path for contour in (pattern.outer, *pattern.inner)])
+
+
+def clear_mm(point: Vector2, paths: Iterable[ArcPath]) -> float:
+    """Return how far a point is from the nearest of some paths, mm."""
+    return min(_distance(point, split(path, max_bulge=QUARTER_BULGE)) for path in paths)
 
 
 def _distance(point: Vector2, path: ArcPath) -> float:

@@ -15,6 +15,7 @@ from math import isfinite
 import numpy as np
 from ezdxf.document import Drawing as Document
 from ezdxf.lldxf.tagwriter import TagWriter
+from ezdxf.sections.classes import REQ_R2004, REQUIRED_CLASSES
 
 from stages.model.cutfile import Machine
 from stages.write.drawing import Drawing, extent
@@ -122,6 +123,7 @@ def exported(document: Document, *, handles: bool = True) -> str:
     The steps are those of ezdxf's `write`, which would read the clock after anything could be done about it.
     """
     document.update_all()
+    _order_classes(document)
     for name, value in CONSTANTS.items():
         document.header[name] = value
     marks = document.ezdxf_metadata()
@@ -131,6 +133,13 @@ def exported(document: Document, *, handles: bool = True) -> str:
     stream = StringIO()
     document.export_sections(TagWriter(stream, write_handles=handles, dxfversion=document.dxfversion))
     return finite(stream.getvalue())
+
+
+def _order_classes(document: Document) -> None:
+    """Put the classes that are there for what the document holds into alphabetical order: ezdxf has them from a set."""
+    classes, always = document.classes.classes, REQUIRED_CLASSES.get(document.dxfversion, REQ_R2004)
+    for key in sorted(key for key in classes if key[0] not in always):
+        classes[key] = classes.pop(key)
 
 
 def finite(text: str) -> str:

@@ -11,6 +11,7 @@ Widths in thousandths of the size: Adobe's metrics of the typefaces (Core 14 AFM
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 ENCODING = "cp1252"
 FIRST_CODE = 32
@@ -21,9 +22,11 @@ DESCENT = 0.207
 """Height of a capital and depth of the letters that go below the line, over the size."""
 
 ELSEWHERE = "?"
+KEPT = 4096
+"""Texts of which the letters and the width are kept: a cell is measured, placed and written, and many come again."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Face:
     """A typeface: what pages call it, its name in PDF, and the width of each letter."""
 
@@ -66,10 +69,11 @@ BOLD = _face(
 )
 
 
+@lru_cache(maxsize=KEPT)
 def written(text: str) -> str:
     """Return a text in letters that the typefaces have: line ends and tabs as spaces, others replaced."""
     plain = _plain(text)
-    return plain if plain.isascii() and plain.isprintable() else "".join(map(_letter, plain))
+    return plain if _is_known(plain) else "".join(map(_letter, plain))
 
 
 def lost(text: str) -> list[str]:
@@ -79,27 +83,40 @@ def lost(text: str) -> list[str]:
 
 def _plain(text: str) -> str:
     """Return a text with its accents on their letters, in one line."""
-    return " ".join(unicodedata.normalize("NFC", text).split())
+    return " ".join((text if text.isascii() else unicodedata.normalize("NFC", text)).split())
 
 
 def _letter(letter: str) -> str:
     """Return a letter, or what stands for it."""
-    for candidate in (letter, unicodedata.normalize("NFD", letter)[0]):
-        if candidate.isprintable() and _known(candidate):
-            return candidate
-    return ELSEWHERE
+    known = (candidate for candidate in (letter, unicodedata.normalize("NFD", letter)[0]) if _is_known(candidate))
+    return next(known, ELSEWHERE)
 
 
-def _known(letter: str) -> bool:
+def _is_known(text: str) -> bool:
+    """Return whether the typefaces have all letters of a text."""
+    if not text.isprintable() or text.isascii():
+        return text.isprintable()
     try:
-        return len(letter.encode(ENCODING)) == 1
+        text.encode(ENCODING)
     except UnicodeEncodeError:
         return False
+    return True
 
 
 def width_mm(text: str, size_pt: float, face: Face = REGULAR) -> float:
     """Return how wide a text is, in mm; kerning is not applied, as readers of PDF do not."""
-    return sum(face.widths[code] for code in written(text).encode(ENCODING)) / THOUSANDTHS * size_pt * MM_PER_POINT
+    return _thousandths(text, face) / THOUSANDTHS * size_pt * MM_PER_POINT
+
+
+@lru_cache(maxsize=KEPT)
+def _thousandths(text: str, face: Face) -> int:
+    return sum(map(face.widths.__getitem__, _codes(text)))
+
+
+def _codes(text: str) -> bytes:
+    """Return the codes of the letters of a text as they are written."""
+    plain = written(text)
+    return plain.encode("ascii" if plain.isascii() else ENCODING)
 
 
 def wrapped(text: str, width: float, size_pt: float, face: Face = REGULAR) -> list[str]:
@@ -134,11 +151,15 @@ def _pieces(words: list[str], width: float, size_pt: float, face: Face) -> Itera
 
 def encoded(text: str) -> str:
     """Return a text as PDF writes it: ASCII, other letters by their octal codes."""
-    return "(" + "".join(map(_escaped, written(text).encode(ENCODING))) + ")"
+    return f"({_codes(text).decode('latin-1').translate(ESCAPES)})"
 
 
-def _escaped(code: int) -> str:
+def _escape(code: int) -> str:
     letter = chr(code)
     if letter in "\\()":
         return "\\" + letter
     return letter if letter.isascii() and letter.isprintable() else f"\\{code:03o}"
+
+
+ESCAPES = {code: _escape(code) for code in range(256)}
+"""How each letter stands in a string of PDF, by its code."""

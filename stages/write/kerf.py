@@ -7,10 +7,11 @@ judged by distances, in closed form, between what they hold and the nominal cont
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from stages.geometry import manyfits
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.beside import Corners
 from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.compensation import Fit, TooNarrow, compensated, fit
+from stages.geometry.compensation import Fit, TooNarrow, compensated
 from stages.model.cutfile import Machine
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
@@ -75,7 +76,7 @@ def fits(entities: Sequence[Entity], items: Sequence[Item], offset_mm: float) ->
     read = [one.path for one in entities if one.layer in CUT_LAYERS and one.closed and one.path is not None]
     if len(read) != len(nominal):
         return []
-    return [fit(contour, path, offset_mm) for contour, path in zip(nominal, read, strict=True)]
+    return manyfits.fits(nominal, read, offset_mm)
 
 
 def offset_metrics(found: Sequence[Fit]) -> tuple[Metric, ...]:

@@ -80,13 +80,14 @@ def stream_of(content: str, entries: str = "") -> str:
     return f"<< {entries} /Length {len(content)} >>\nstream\n{content}endstream"
 
 
-def file_of(objects: Sequence[str], about: int) -> str:
+def file_of(objects: Sequence[str], about: int, head: str = HEAD) -> str:
     """Return a file of objects, numbered from 1, with the table of where they begin.
 
     The first is the catalog, the second (`TREE`) the list of pages; `about` is what says of the file what it is.
+    Every letter is a byte.
     """
-    made, places = [HEAD], list[int]()
-    at = len(HEAD)
+    made, places = [head], list[int]()
+    at = len(head)
     for number, content in enumerate(objects, 1):
         places.append(at)
         made.append(f"{number} 0 obj\n{content}\nendobj\n")

@@ -21,7 +21,7 @@ from stages.geometry.arcpath import ArcPath, bounds, transform
 from stages.geometry.arrays import ArrayValue, Points2, Vector2
 from stages.geometry.rigid import Rigid2, apply, matrix
 from stages.model.cutfile import Machine
-from stages.model.pattern import Contour, FlatPattern, NotchPlace, Traced
+from stages.model.pattern import Contour, FlatPattern, NotchPlace, Purpose, Traced
 from stages.model.patternlayers import DRILL, NOTCH_LAYERS
 from stages.model.sheet import SheetLayout
 from stages.model.strokes import Stroke, strokes
@@ -50,7 +50,7 @@ class Line:
     """A path of chords; `traced` where its vertices are turn and curve points.
 
     layer: what it means.  contour: the number of a contour of its part, the outer one 0; None for all else.
-    name: of the mark or hole, if it has one.
+    name: of the mark or hole, if it has one.  purpose: of a contour.
     """
 
     layer: str
@@ -58,6 +58,7 @@ class Line:
     traced: Traced | None = None
     contour: int | None = None
     name: str = ""
+    purpose: Purpose | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,7 +115,7 @@ class Copy:
 def as_drawing(file: PatternFile) -> Drawing:
     """Return the paths and texts of a pattern file as a drawing, the pieces before the stock."""
     items = [
-        Item(line.layer, piece.part, line.path, line.contour, line.name, piece.copy)
+        Item(line.layer, piece.part, line.path, line.contour, line.name, piece.copy, purpose=line.purpose)
         for piece in file.pieces
         for line in piece.lines
     ]
@@ -228,7 +229,8 @@ def _lines(pattern: FlatPattern) -> Iterator[Line]:
         if stroke.contour is None:
             yield _mark(stroke, pattern.outer.chord_mm)
         else:
-            yield Line(stroke.layer, stroke.path, contours[stroke.contour].traced, stroke.contour, stroke.name)
+            made = contours[stroke.contour]
+            yield Line(stroke.layer, stroke.path, made.traced, stroke.contour, stroke.name, made.purpose)
 
 
 def _mark(stroke: Stroke, chord_mm: float) -> Line:

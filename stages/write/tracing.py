@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 
 from stages.geometry.arcpath import ArcPath, distances, joint_turns, piece_count, polygon
 from stages.geometry.arrays import Array, Points2, Vector2, norm
-from stages.geometry.inscribed import inscribed
+from stages.geometry.inscribed import has_length, inscribed
 from stages.geometry.plane import CircularArc, PlaneCurve
 from stages.geometry.sampling import resolved, samples
 from stages.model.pattern import Contour, Drill, FlatPattern, Traced
@@ -68,7 +68,9 @@ def drill_of(hole: Contour) -> Drill | None:
     edge = hole.edges[0]
     if hole.purpose == "cut" or len(hole.edges) > 1 or not isinstance(edge, CircularArc):
         return None
-    return Drill(hole.name, edge.centre, 2.0 * edge.radius) if abs(abs(edge.sweep_rad) - 2.0 * pi) <= ROUND else None
+    if abs(abs(edge.sweep_rad) - 2.0 * pi) > ROUND:
+        return None
+    return Drill(hole.name, edge.centre, 2.0 * edge.radius, hole.purpose)
 
 
 def traced(contour: Contour) -> Contour:
@@ -77,7 +79,8 @@ def traced(contour: Contour) -> Contour:
         finer = path = contour.path
     else:
         path = inscribed(contour.edges, accuracy=contour.chord_mm)
-        points = np.concatenate([_finer(edge, FINER * contour.chord_mm)[:-1] for edge in contour.edges])
+        finer_edges = [_finer(edge, FINER * contour.chord_mm) for edge in contour.edges]
+        points = np.concatenate([some[:-1] for some in finer_edges if has_length(some)])
         finer = ArcPath(points, np.zeros(points.shape[0]), closed=True)
     turns = flagged(path.vertices, turn_places(contour.path), contour.chord_mm)
     return replace(contour, path=path, traced=Traced(turns, finer))

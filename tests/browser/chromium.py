@@ -19,7 +19,12 @@ import pytest
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser")
 SECONDS = 90.0
 ALWAYS = ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--remote-debugging-pipe", "--no-first-run")
-WITH_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+WITH_WEBGL = (
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-accelerated-2d-canvas",
+)
 WITHOUT_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 READS, WRITES = 3, 4
 """Descriptors of chromium's own."""

@@ -106,8 +106,8 @@ def written(folder: Path) -> Path:
     return file
 
 
-def colours(values: Array) -> Array:
+def colours(values: Array, limit: float = LIMIT) -> Array:
     """Return the colours that strains have on the page, 0 to 255: white, orange stretched, blue pressed."""
-    share = np.clip(values / LIMIT, -1.0, 1.0)[..., None]
+    share = np.clip(values / limit, -1.0, 1.0)[..., None]
     ends = np.where(share >= 0.0, [213.0, 94.0, 0.0], [0.0, 114.0, 178.0])
     return np.asarray(255.0 + np.abs(share) * (ends - 255.0))

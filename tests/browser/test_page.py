@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.browser.chromium import WITHOUT_WEBGL, Page, needs_chromium, opened
-from tests.browser.pages import HIGH, HOSTILE, PLATE, REFUSED, RULINGS, VALUE, WIDE, X, Y, colours, written
+from tests.browser.pages import HIGH, HOSTILE, LIMIT, PLATE, REFUSED, RULINGS, VALUE, WIDE, X, Y, colours, written
 
 pytestmark = needs_chromium
 NAMES = "[...document.querySelectorAll('#table tbody a')].map((a) => a.textContent)"
@@ -82,7 +82,7 @@ def test_keys_step_through_the_table_and_move_the_pattern(page: Page) -> None:
 
 def test_colours_on_the_canvas_are_those_of_the_strains(page: Page) -> None:
     go(page, HOSTILE)
-    page.ask("Object.assign(current.flat.state, {rulings: false, worst: null, cursor: null, heat: true})")
+    page.ask("Object.assign(current.flat.state, {rulings: false, worst: null, cursor: null, signs: false})")
     inside = [(j, i) for j in range(1, X.shape[0] - 1) for i in range(1, X.shape[1] - 1)][:50]
     rows, columns = np.transpose(inside)
     shown = pixels(page, np.column_stack([X[rows, columns], Y[rows, columns]]).tolist(), 0)[:, 0]
@@ -90,9 +90,30 @@ def test_colours_on_the_canvas_are_those_of_the_strains(page: Page) -> None:
     assert np.abs(shown - np.round(colours(VALUE[rows, columns]))).max() <= STEP
 
 
+def test_signs_stand_where_the_limit_is_exceeded_and_nowhere_else(page: Page) -> None:
+    go(page, HOSTILE)
+    far = np.abs(VALUE) / LIMIT
+    inside = np.zeros(far.shape, dtype=bool)
+    inside[1:-1, 1:-1] = True
+    state = "Object.assign(current.flat.state, {rulings: false, worst: null, cursor: null, signs: %s})"
+    shown = []
+    for signs in ("true", "false"):
+        page.ask(state % signs)
+        shown += [
+            [
+                pixels(page, np.column_stack([X[at], Y[at]]).tolist(), 8)
+                for at in (inside & (far > 1.1), inside & (far < 0.9))
+            ]
+        ]
+    (beyond, within), (bare, kept) = shown
+    assert len(beyond) > 5
+    assert (np.abs(beyond - bare).max(axis=(1, 2)) > 50.0).all()
+    assert (within == kept).all()
+
+
 def test_rulings_are_drawn_within_a_pixel(page: Page) -> None:
     go(page, HOSTILE)
-    page.ask("Object.assign(current.flat.state, {rulings: true, worst: null, cursor: null, heat: false})")
+    page.ask("Object.assign(current.flat.state, {rulings: true, worst: null, cursor: null, field: null})")
     along = [
         [ax + t * (bx - ax), ay + t * (by - ay)] for ax, ay, bx, by, _ in RULINGS for t in (0.1, 0.35, 0.5, 0.8)
     ]  # fmt: skip

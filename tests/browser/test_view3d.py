@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pipeline.report.html import LIBRARY, SCRIPTS
 from pipeline.report.pictures_net import net, view_direction
 from pipeline.report.viewformed import ruled_part
 from stages.geometry.arrays import Array
@@ -21,8 +22,7 @@ from tests.near import assert_near, assert_relative
 from tests.parts import passage
 
 ASSETS = files("pipeline") / "data" / "report"
-OWN = ("view3d_model.js", "view3d_paint.js", "view3d.js")
-LIBRARY = "three.min.js"
+OWN = tuple(name for name in SCRIPTS if name.startswith("view3d"))
 HERE = Path(__file__).parent
 DRILLED = {"name": "fix", "kind": "drill", "at": [0.5, 0.5], "diameter": 60}
 SHEET = {"kind": "cone", "radius0": 300, "radius1": 150, "height": 400, "sweep": 100}

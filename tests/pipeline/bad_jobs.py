@@ -76,13 +76,13 @@ BAD: dict[str, tuple[str, list[str]]] = {
     ),
     "an empty part list": (
         "schema = 1\npart = []\n",
-        ["job.toml:2:8: part: an array of 0 (an array of one or more tables is needed)"],
+        ["job.toml:2:8: part: an array of 0 (an array of 1 to 10000 tables is needed)"],
     ),
     "no part and no schema": (
         "",
         [
             "job.toml:1:1: schema: missing (1 is needed)",
-            "job.toml:1:1: part: missing (an array of one or more tables is needed)",
+            "job.toml:1:1: part: missing (an array of 1 to 10000 tables is needed)",
         ],
     ),
     "duplicate names, upper and lower case alike, beside an error in another part": (

@@ -14,7 +14,7 @@ import pytest
 from pipeline.asmade import comparison
 from pipeline.asmade_document import compare_document, compare_lines, compare_schema
 from pipeline.asmade_fits import k_offer, kerf_offer, springback_offer
-from pipeline.asmade_nominal import Nominal, length_tolerance, nominal_of
+from pipeline.asmade_nominal import ISO_2768_ANGLES, ISO_2768_M, Nominal, length_tolerance, nominal_of
 from pipeline.asmade_rows import COLUMNS, Measured, Reading, exact
 from pipeline.asmade_sheet import read_sheet, template
 from pipeline.cli import main
@@ -134,6 +134,15 @@ def test_the_empty_sheet_names_everything_and_reads_as_nothing_measured(folder: 
 )
 def test_general_tolerances_are_those_of_the_table(size: float, limit: float | None) -> None:
     assert length_tolerance(size) == limit
+
+
+def test_both_tables_of_general_tolerances_are_those_of_the_standard() -> None:
+    lengths = {3: "0.1", 6: "0.1", 30: "0.2", 120: "0.3", 400: "0.5", 1000: "0.8", 2000: "1.2", 4000: "2"}
+    minutes = {10: 60, 50: 30, 120: 20, 400: 10, np.inf: 5}
+    assert dict(ISO_2768_M) == {size: float(limit) for size, limit in lengths.items()}
+    for (leg, limit), (most, minute) in zip(ISO_2768_ANGLES, minutes.items(), strict=True):
+        assert leg == most
+        assert_near(60.0 * limit, float(minute), bound=1e-12, why="minutes of arc as degrees")
 
 
 # Verdicts

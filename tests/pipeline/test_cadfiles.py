@@ -11,6 +11,7 @@ from pipeline.cadchild import Unreadable
 from pipeline.cadfiles import CHILD, cad_source, faces_named, read_guarded
 from pipeline.cli import main
 from pipeline.decode import ResolveError
+from pipeline.reach import Reach
 from stages.model.cadface import CadBody
 from stages.model.faces import FaceFile
 from tests import cad
@@ -28,15 +29,15 @@ kind = "face"
 
 def refusal(folder: Path, name: str, **keys: object) -> ResolveError:
     with pytest.raises(ResolveError) as caught:
-        cad_source(folder, FaceFile(file=name, **keys))  # type: ignore[arg-type]
+        cad_source(Reach(folder), FaceFile(file=name, **keys))  # type: ignore[arg-type]
     return caught.value
 
 
 def test_one_face_all_faces_or_the_list_of_them(tmp_path: Path) -> None:
     cad.step(tmp_path / "Blech groß ä.step", cad.filleted_box())
     name = "Blech groß ä.step"
-    one = cad_source(tmp_path, FaceFile(file=name, index=2))
-    every = cad_source(tmp_path, FaceFile(file=name, all=True))
+    one = cad_source(Reach(tmp_path), FaceFile(file=name, index=2))
+    every = cad_source(Reach(tmp_path), FaceFile(file=name, all=True))
     assert [face.sort for face in one.body.faces] == ["cylinder"]
     assert [face.index for face in every.body.faces] == list(range(7))
     assert one.digest == every.digest
@@ -57,7 +58,7 @@ def test_a_file_that_is_missing_or_no_cad_file_is_refused(tmp_path: Path) -> Non
     assert refusal(tmp_path, "a.step").message == "there is no file a.step"
     assert refusal(tmp_path, "a.dwg").message == "a.dwg is no CAD file by its name"
     (tmp_path / "b.stp").mkdir()
-    assert refusal(tmp_path, "b.stp").message == "b.stp cannot be read: Is a directory"
+    assert refusal(tmp_path, "b.stp").message == "b.stp is a folder"
 
 
 @pytest.mark.parametrize("package", ["OCP", "rhino3dm"])
@@ -155,4 +156,5 @@ def test_the_digest_of_a_job_follows_the_file(tmp_path: Path) -> None:
         cad.rhino(tmp_path / "a.3dm", cad.rhino_pipe(radius))
         digests.append(job_of(read(job)).digest)
     assert digests[2] not in digests[:2]
-    assert ("a.3dm", cadfiles.cad_source(tmp_path, FaceFile(file="a.3dm", index=0)).digest) in job_of(read(job)).inputs
+    digest = cadfiles.cad_source(Reach(tmp_path), FaceFile(file="a.3dm", index=0)).digest
+    assert ("a.3dm", digest) in job_of(read(job)).inputs

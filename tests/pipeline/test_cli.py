@@ -35,6 +35,11 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 JOBS = {
     "made": (PLATE + STOCK, 0, "made: 1 piece on 1 sheet, 2 drawings and report.json in out"),
     "flat": (PLATE, 0, "made: 1 piece, 1 drawing and report.json in out"),
+    "pages": (
+        PLATE.replace('["json"]', '["json", "html", "traveller"]'),
+        0,
+        "made: 1 piece, 1 drawing, report.html, traveller.pdf and report.json in out",
+    ),
     "rejected": (PLATE + TWISTED, 1, "rejected: twisted; nothing nested, 1 drawing and report.json in out"),
     "too large": (
         PLATE + STOCK.replace("100", "10"),

@@ -3,8 +3,10 @@
 import json
 from pathlib import Path
 
+import msgspec
 import pytest
 
+from pipeline.finishedentries import DxfEntry
 from pipeline.helps import helps_of, tab_width_mm
 from pipeline.job import job_of
 from pipeline.jobfile import read
@@ -116,8 +118,6 @@ def test_a_job_without_stock_says_that_they_do_nothing(tmp_path: Path) -> None:
 
 
 def test_the_report_tells_them_and_reads_back(tmp_path: Path) -> None:
-    from pipeline.finished import DxfEntry, msgspec
-
     result = made(tmp_path, SHEET + ALL)
     report = json.loads(outputs(result)[1]["report.json"])
     assert report["job"]["process"]["kerf_compensation"] == "offset"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.report.html import data_block, report_html
+from pipeline.report.html import data_block, part_texts, report_html
 from pipeline.report.meanings import MEANINGS
 from tests.browser.pages import HOSTILE, PLATE, REFUSED, report, view
 
@@ -47,7 +47,7 @@ def test_a_meaning_is_one_line(name: str) -> None:
 
 
 def test_no_text_ends_the_data() -> None:
-    block = data_block(report(), view())
+    block = data_block(report(), view(), part_texts(report(), view()))
     assert "<" not in block
     assert "\u2028" not in block
     rows = json.loads(block)["rows"]
@@ -55,7 +55,7 @@ def test_no_text_ends_the_data() -> None:
 
 
 def test_the_page_has_the_numbers_of_the_report() -> None:
-    block = json.loads(data_block(report(), view()))
+    block = json.loads(data_block(report(), view(), part_texts(report(), view())))
     assert [json.loads(part)["report"] for part in block["parts"]] == report()["parts"]
     assert [json.loads(part)["view"] for part in block["parts"]] == view()["parts"]
     assert [row["failed"] for row in block["rows"]] == [0, 1, 1]

@@ -108,7 +108,7 @@ def test_a_file_too_large_or_not_text_or_not_there_is_refused(tmp_path: Path) ->
         (large, "large.toml: larger than 20 MB (is this a job file?)"),
         (binary, "binary.toml:2:9: not UTF-8 text (save the file as UTF-8)"),
         (tmp_path / "none.toml", "none.toml: cannot be read: No such file or directory"),
-        (tmp_path, "cannot be read: Is a directory"),
+        (tmp_path, "cannot be read: it is a folder"),
     ]:
         with pytest.raises(BadInputError) as caught:
             read(file)

@@ -168,7 +168,7 @@ def test_keys_that_do_not_go_with_a_mesh_are_refused(tmp_path: Path, line: str, 
 
 
 def test_large_files_are_told_of_before_they_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pipeline.meshsources.TOLD", 1000)
+    monkeypatch.setattr("pipeline.reach.TOLD", 1000)
     (tmp_path / "hood.stl").write_bytes(binary_stl(SHEET))
     told: list[str] = []
     read(write_job(tmp_path, JOB), (), told.append)

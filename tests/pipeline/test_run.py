@@ -156,6 +156,18 @@ def test_a_method_that_falls_short_is_no_solution_with_both_numbers(
     assert finding.where == {"reached": 2e-3, "wanted": 1e-3, "unit": "rad"}
 
 
+def test_contours_that_a_flavour_cannot_hold_are_no_solution(
+    stages: object, job: Job, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fall_short(*_: object) -> None:
+        raise NoSolutionError("a path outside of a sharp corner", reached=1.0, wanted=0.05, unit="mm")
+
+    monkeypatch.setattr("stages.write.flavours.as_cut", fall_short)
+    result = run_job(job)
+    assert (result.status, result.exit_code) == ("no-solution", 3)
+    assert statuses(result)[2] == ["skipped", "fail"]
+
+
 def test_without_stock_nothing_is_nested(stages: object, tmp_path: Path) -> None:
     result = run_job(job_of(read(write_job(tmp_path, PLATE))))
     assert (result.exit_code, statuses(result)[1]) == (0, ["skipped", "pass"])

@@ -1,4 +1,4 @@
-"""The scripts of the view of the formed part: fit to stand in a page, with licence, asking nothing of a network."""
+"""The scripts of the page, those of the formed view among them: fit to stand in it, asking nothing of a network."""
 
 import json
 import re
@@ -6,22 +6,22 @@ from importlib.resources import files
 
 import pytest
 
+from pipeline.report.html import LIBRARY, SCRIPTS
+
 ASSETS = files("pipeline") / "data" / "report"
-LIBRARY = "three.min.js"
-SCRIPTS = (LIBRARY, "view3d_model.js", "view3d_paint.js", "view3d.js")
-NAMESPACE = "http://www.w3.org/1999/xhtml"
-"""A name of elements, never asked for."""
+NAMESPACES = {"http://www.w3.org/1999/xhtml", "http://www.w3.org/2000/svg"}
+"""Names of elements, never asked for."""
 ASKING = re.compile(
     r"\bfetch\(|XMLHttpRequest|WebSocket|importScripts|sendBeacon|EventSource|sourceMappingURL|\beval\("
 )
 
 
-@pytest.mark.parametrize("name", SCRIPTS)
+@pytest.mark.parametrize("name", [LIBRARY, *SCRIPTS])
 def test_a_script_can_stand_in_a_page_and_asks_for_nothing(name: str) -> None:
     text = (ASSETS / name).read_text("utf-8")
     assert "</script" not in text.lower()
     assert "<!--" not in text
-    assert set(re.findall(r"https?://[^\s\"'`)]+", text)) <= {NAMESPACE}
+    assert set(re.findall(r"https?://[^\s\"'`)]+", text)) <= NAMESPACES
     assert not ASKING.findall(text)
 
 

@@ -9,7 +9,7 @@ import pytest
 from pipeline.report.pictures_net import Net, net
 from pipeline.report.viewarrays import encoded_numbers, encoded_points, rounding_mm
 from pipeline.report.viewcells import COLUMNS, cells
-from pipeline.report.viewformed import curvature_field, formed, ruled_part, sagitta_mm, scale_end, triangles
+from pipeline.report.viewformed import formed, ruled_part, sagitta_mm, triangles
 from pipeline.run import PartRun
 from stages.construct import construct
 from stages.geometry.arrays import Array
@@ -105,30 +105,6 @@ def test_both_rails_lie_flat_as_the_pattern_does() -> None:
     across = np.stack([np.zeros_like(v), np.pi * RADIUS * v], axis=1)
     expected = np.stack([across, across + np.array([LONG, 0.0])], axis=1)
     assert_near(flat, expected, bound=1e-5 * np.pi * RADIUS, why="rounding to whole steps")
-
-
-def test_curvature_of_a_pipe_is_one_over_its_radius() -> None:
-    surface, _ = surface_of(HALF_PIPE)
-    field = curvature_field(surface, net(surface))
-    assert_near(np.abs(floats(str(field["values"]))), np.full(2 * (QUADS + 1), 1 / RADIUS), bound=1e-9, why="float32")
-    assert field["limit"] == 5e-3
-
-
-def test_curvature_at_an_apex_is_without_bound_and_does_not_set_the_scale() -> None:
-    surface, _ = surface_of(CONE)
-    field = curvature_field(surface, net(surface))
-    both = np.abs(floats(str(field["values"])).reshape(-1, 2))
-    assert np.isinf(both[:, 1]).all()
-    slant = np.hypot(300.0, 400.0)
-    assert_relative(both[:, 0], np.full(len(both), 400.0 / slant / 300.0), bound=1e-6, why="cos of the half angle / r")
-    assert field["limit"] == scale_end(2.0 * 400.0 / slant / 300.0)
-
-
-@pytest.mark.parametrize(
-    ("largest", "end"), [(0.0, 1.0), (1e-13, 1.0), (0.0021, 5e-3), (0.005, 5e-3), (0.9, 1.0), (1.0, 1.0), (30.0, 50.0)]
-)
-def test_a_scale_ends_at_the_next_of_one_two_five(largest: float, end: float) -> None:
-    assert scale_end(largest) == end
 
 
 def test_a_hole_takes_its_area_out_of_the_net() -> None:

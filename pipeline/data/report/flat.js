@@ -11,29 +11,37 @@ const MARK_STYLES = {
 };
 const isDark = () => document.documentElement.dataset.theme === "dark";
 
-function worstPlace(part) {
+const MEASURED_BY = { strain: "max_strain", bending: "outer_fibre_strain" };
+
+/* What failed, else the extreme of what the pattern is coloured by, else the largest strain. */
+function worstPlace(part, field) {
   const places = part.view.flat.places;
   const metric = (place) => part.report.stages.find((s) => s.stage === place.stage)?.metrics.find((m) => m.name === place.metric);
   const known = places.map((place) => ({ ...place, value: metric(place) })).filter((place) => place.value);
-  return known.find((place) => !place.value.pass) ?? known.find((place) => place.metric === "max_strain") ?? known[0] ?? null;
+  const named = (name) => known.find((place) => place.metric === name);
+  return known.find((place) => !place.value.pass) ?? named(MEASURED_BY[field?.name]) ?? named("max_strain") ?? known[0] ?? null;
 }
 
-function openFlat(canvas, part, say, onCursor) {
+function openFlat(canvas, part, field, say, onCursor) {
   const flat = part.view.flat;
-  const field = strainField(part);
-  const state = { flat, field, heat: field !== null, rulings: true, worst: worstPlace(part), cursor: null, chosen: null };
+  const state = { flat, field, signs: true, rulings: true, worst: worstPlace(part, field), cursor: null };
   const hover = (at) => {
     state.cursor = at;
     say(at ? flatWords(state, at) : summaryWords(state));
     onCursor?.(at ? { x: at[0], y: at[1] } : null);
     plan.redraw();
   };
-  const plan = openPlan(canvas, pathBox(flat.contours), (now) => drawFlat(now, state), hover);
+  const plan = openPlan(canvas, pathBox(flat.contours), (now) => drawFlat(now, state), hover, () => (state.field ? SCALE_ROOM : 0));
   plan.state = state;
   plan.setCursor = (place) => {
     state.cursor = place && place.x !== undefined ? [place.x, place.y] : null;
     say(state.cursor ? flatWords(state, state.cursor) : summaryWords(state));
     plan.redraw();
+  };
+  plan.colourBy = (chosen) => {
+    Object.assign(state, { field: chosen, worst: worstPlace(part, chosen) });
+    say(summaryWords(state));
+    plan.refit();
   };
   say(summaryWords(state));
   return plan;
@@ -45,10 +53,8 @@ function summaryWords({ worst }) {
 
 function flatWords(state, [x, y]) {
   const words = [`x ${x.toFixed(2)}`, `y ${y.toFixed(2)} mm`];
-  if (state.field) {
-    const k = nearestPlace(state.field)(x, y);
-    if (k >= 0 && state.field.value[k] !== null) words.push(`strain ${shown(state.field.value[k])} at the nearest place (sampled)`);
-  }
+  const value = state.field?.at(x, y) ?? null;
+  if (value !== null) words.push(`${state.field.title} ${shown(value)} (${state.field.evidence})${Math.abs(value) > state.field.limit ? " \u25b2 beyond the limit" : ""}`);
   const ruling = nearestRuling(state.flat.rulings, x, y);
   if (ruling) words.push(`nearest ruling v ${shown(ruling[4])}`);
   return words.join("   ");
@@ -72,23 +78,23 @@ function drawFlat(plan, state) {
   const ink = themeColour("--ink");
   context.save();
   outlinePath(context, flat.contours, place);
-  context.fillStyle = state.heat ? "#fff" : themeColour("--part");
+  context.fillStyle = state.field ? "#fff" : themeColour("--part");
   context.fill("evenodd");
   context.clip("evenodd");
   context.lineWidth = 1.5; // cells overlap, else the ground shines through between them
-  if (state.heat) paintField(context, state.field, place);
-  if (state.rulings) drawRulings(context, flat.rulings, place, state.heat);
+  state.field?.paint(context, place);
+  if (state.rulings) drawRulings(context, flat.rulings, place, state.field !== null);
+  if (state.field && state.signs) paintSigns(plan, state.field);
   context.restore();
-  drawMarks(plan, flat, state.heat);
+  drawMarks(plan, flat, state.field !== null);
   context.setLineDash([]);
   context.strokeStyle = ink;
   context.lineWidth = 1.6;
   outlinePath(context, flat.contours, place);
   context.stroke();
   if (state.worst) drawTarget(context, place(...state.worst.at), ink);
-  if (state.chosen) drawTarget(context, place(...state.chosen.at), "#cc79a7", 14);
   if (state.cursor) drawCross(context, place(...state.cursor), themeColour("--accent"));
-  if (state.heat) drawStrainScale(context, state.field, plan.width, ink);
+  if (state.field) drawScale(plan, state.field);
 }
 
 function outlinePath(context, contours, place) {
@@ -140,12 +146,12 @@ function drawText({ context, place, k }, { text, at, height, angle }) {
   context.restore();
 }
 
-function drawTarget(context, [x, y], colour, radius = 9) {
+function drawTarget(context, [x, y], colour) {
   for (const [width, stroke] of [[5, themeColour("--bg")], [2, colour]]) {
     context.lineWidth = width;
     context.strokeStyle = stroke;
     context.beginPath();
-    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.arc(x, y, 9, 0, 2 * Math.PI);
     context.stroke();
   }
 }

@@ -46,9 +46,21 @@ function goTo(index) {
 function followHash() {
   const found = /^#part-(\d+)$/.exec(location.hash);
   if (!found || !(Number(found[1]) < report.rows.length)) return;
-  showPart(Number(found[1]));
-  byId("part").focus({ preventScroll: true });
-  byId("part").scrollIntoView();
+  openPart(Number(found[1]), () => {
+    byId("part").focus({ preventScroll: true });
+    byId("part").scrollIntoView();
+  });
+}
+
+let asked = -1; // the part that was asked for last
+
+function openPart(index, then) {
+  asked = index;
+  whenParts([index], () => {
+    if (asked !== index) return;
+    showPart(index);
+    then?.();
+  });
 }
 
 function startPage() {
@@ -62,7 +74,7 @@ function startPage() {
   }
   window.addEventListener("hashchange", followHash);
   if (location.hash) followHash();
-  else if (report.rows.length) showPart(ordered([...report.rows.keys()])[0]);
+  else if (report.rows.length) openPart(ordered([...report.rows.keys()])[0]);
   document.documentElement.dataset.ready = "yes";
 }
 

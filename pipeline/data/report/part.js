@@ -24,7 +24,7 @@ const STAGE_TITLES = { construct: "Construct: from the data asked for", verify: 
 
 function stageBox(name, stage) {
   const word = { pass: "\u2713 pass", fail: "\u2717 fail", skipped: "skipped" }[stage.status] ?? stage.status;
-  const title = make("h3", {}, `${STAGE_TITLES[name] ?? name} `, make("span", { class: stage.status === "fail" ? "fail" : "pass", text: word }));
+  const title = make("h3", {}, `${STAGE_TITLES[name] ?? name} `, make("span", { class: { pass: "pass", fail: "fail" }[stage.status], text: word }));
   const heads = ["Metric", "Value", "Unit", "Limit", "Margin", "Verdict", "Evidence"];
   const head = make("thead", {}, make("tr", {}, ...heads.map((text, i) => make("th", { scope: "col", class: [1, 3, 4].includes(i) ? "n" : "", text }))));
   const table_ = stage.metrics?.length ? make("div", { class: "scroll" }, make("table", { class: "stages" }, make("caption", { class: "unseen", text: `Metrics of ${name}` }), head, make("tbody", {}, ...metricRows(stage)))) : null;
@@ -50,9 +50,9 @@ function showPart(index) {
   section.replaceChildren(
     make("h2", { id: "part-title", text: row.name }),
     facts([["Verdict", failed ? "\u2717 fail" : "\u2713 pass"], ["Class", row.class], ["Quantity", row.quantity], ["Size", one.flat ? `${shown(one.flat.width)} \u00d7 ${shown(one.flat.height)} mm` : null],
-      ["Area flat", one.flat ? shown(one.flat.area, "mm2") : null], ["Area formed", one.surface?.area ? shown(one.surface.area, "mm2") : null],
+      ["Area flat", one.flat ? shown(one.flat.area, "mm2") : null], ["Formed", one.formed ? `${one.formed.size_mm.map((side) => shown(side)).join(" \u00d7 ")} mm (${one.formed.evidence})` : null], ["Area formed", one.surface?.area ? shown(one.surface.area, "mm2") : null],
       ["Mass", one.mass_kg === null ? null : shown(one.mass_kg, "kg")], ["Cut length", one.cut_length_mm === null ? null : shown(one.cut_length_mm, "mm")], ["Pierces", one.pierces]]),
-    views, ...one.stages.map((stage) => stageBox(stage.stage, stage)));
+    views, ...[tapeBox(one)].filter(Boolean), ...one.stages.map((stage) => stageBox(stage.stage, stage)));
   section.setAttribute("aria-labelledby", "part-title");
   current = { index, flat: null, solid: null };
   if (part.view?.flat) views.append(flatPanel(part));
@@ -72,16 +72,26 @@ function flatPanel(part) {
     event.currentTarget.setAttribute("aria-pressed", String(state[key]));
     current.flat.redraw();
   } } });
-  const field = strainField(part);
-  const strain = part.report.stages.flatMap((stage) => stage.metrics).filter((metric) => metric.name === "max_strain").pop();
-  const none = field || !strain ? null : make("div", { class: "legend", text: `No strain to colour: at most ${shown(strain.value)} anywhere (${strain.evidence})` });
-  const panel = make("div", { class: "view" }, planControls(() => current.flat, part.view.flat.rulings.length ? toggle("Rulings", "rulings") : null, field ? toggle("Strain", "heat") : null),
-    make("div", { class: "stage" }, canvas), said, none, flatLegend(part));
+  const fields = fieldsOf(part), words_ = strainWords(part);
+  const panel = make("div", { class: "view" }, planControls(() => current.flat, part.view.flat.rulings.length ? toggle("Rulings", "rulings") : null, colourChoice(fields)),
+    make("div", { class: "stage" }, canvas), said, words_ ? make("div", { class: "legend", text: words_ }) : null, flatLegend(part));
   current.open = () => {
-    current.flat = openFlat(canvas, part, (words_) => { said.textContent = words_; }, (place) => current.solid?.setCursor(place));
+    current.flat = openFlat(canvas, part, shownFirst(fields), (told) => { said.textContent = told; }, (place) => current.solid?.setCursor(place));
     plans.add(current.flat);
   };
   return panel;
+}
+
+/* The colours of both views: that which is chosen here is shown formed, too. */
+function colourChoice(fields) {
+  if (!fields.length) return null;
+  const first = shownFirst(fields), option = (field) => make("option", { value: field?.name ?? "", text: field?.title ?? "no colours", selected: field === first });
+  const choose = (event) => {
+    const field = fields.find(({ name }) => name === event.target.value) ?? null;
+    current.flat.colourBy(field);
+    current.solid?.setField(field?.name ?? null);
+  };
+  return make("select", { "aria-label": "Colours of the pattern", on: { change: choose } }, option(null), ...fields.map(option));
 }
 
 function solidPanel(part) {
@@ -90,7 +100,7 @@ function solidPanel(part) {
   const start = () => {
     if (current !== here) return;
     const onCursor = (place) => current.flat?.setCursor(place);
-    here.solid = window.planishView3d.mount(host, part.view.formed, { onCursor, theme: isDark() ? "dark" : "light" });
+    here.solid = window.planishView3d.mount(host, part.view.formed, { onCursor, field: here.flat?.state.field?.name, theme: isDark() ? "dark" : "light" });
   };
   requestAnimationFrame(() => setTimeout(start)); // the numbers and the flat view are there first
   return make("div", { class: "view solid" }, host);

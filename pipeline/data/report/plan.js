@@ -2,7 +2,8 @@
 
 const themeColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-function openPlan(canvas, box, draw, hover) {
+/* headroom: px above the drawing that are to stay free, at a time. */
+function openPlan(canvas, box, draw, hover, headroom = () => 0) {
   const context = canvas.getContext("2d");
   const plan = { canvas, context, k: 1, ox: 0, oy: 0, width: 0, height: 0, fitted: 1 };
   plan.place = (x, y) => [plan.ox + plan.k * x, plan.oy - plan.k * y];
@@ -10,7 +11,8 @@ function openPlan(canvas, box, draw, hover) {
   let asked = 0;
   plan.redraw = () => { if (!asked) asked = requestAnimationFrame(() => { asked = 0; paint(plan, draw); }); };
   plan.paint = () => paint(plan, draw);
-  plan.fit = () => { fitPlan(plan, box); plan.redraw(); };
+  plan.fit = () => { fitPlan(plan, box, headroom()); plan.redraw(); };
+  plan.refit = () => { if (Math.abs(plan.k - plan.fitted) < 1e-9 * plan.fitted) plan.fit(); else plan.redraw(); };
   plan.zoom = (factor, px = plan.width / 2, py = plan.height / 2) => { zoomPlan(plan, factor, px, py); plan.redraw(); };
   plan.move = (dx, dy) => { plan.ox += dx; plan.oy += dy; plan.redraw(); };
   const sized = () => {
@@ -18,7 +20,7 @@ function openPlan(canvas, box, draw, hover) {
     plan.width = canvas.clientWidth; plan.height = canvas.clientHeight;
     const dpr = window.devicePixelRatio || 1;
     canvas.width = Math.round(plan.width * dpr); canvas.height = Math.round(plan.height * dpr);
-    if (whole) fitPlan(plan, box);
+    if (whole) fitPlan(plan, box, headroom());
     plan.paint();
   };
   const watch = new ResizeObserver(sized);
@@ -30,12 +32,14 @@ function openPlan(canvas, box, draw, hover) {
   return plan;
 }
 
-function fitPlan(plan, box) {
-  const room = [Math.max(plan.width - 60, 20), Math.max(plan.height - 120, 20)];
+const MARGIN = 24, FOOT = 44; // px around the drawing; the scale bar stands in the foot
+
+function fitPlan(plan, box, headroom) {
+  const room = [Math.max(plan.width - 2 * MARGIN, 20), Math.max(plan.height - headroom - MARGIN - FOOT, 20)];
   const size = [Math.max(box[2] - box[0], 1e-9), Math.max(box[3] - box[1], 1e-9)];
   plan.k = plan.fitted = Math.min(room[0] / size[0], room[1] / size[1]);
   plan.ox = plan.width / 2 - (plan.k * (box[0] + box[2])) / 2;
-  plan.oy = plan.height / 2 + (plan.k * (box[1] + box[3])) / 2;
+  plan.oy = headroom + MARGIN + room[1] / 2 + (plan.k * (box[1] + box[3])) / 2;
 }
 
 function zoomPlan(plan, factor, px, py) {

@@ -22,7 +22,7 @@ function sheetDrawing(sheet, number) {
   const copies = sheet.placements.map((placement) => {
     const index = rowOf.get(placement.part);
     const flat = partAt(index).view?.flat;
-    return { placement, index, move: placedBy(placement), contours: flat ? flat.contours : [] };
+    return { placement, index, move: placedBy(placement), contours: flat ? flat.contours : [], label: flat?.label };
   });
   return { ground, copies, defects: view.defects ?? [], zones: view.zones ?? [], offcut: sheet.offcut, over: null };
 }
@@ -43,14 +43,14 @@ function drawSheet(plan, drawing) {
   for (const copy of drawing.copies) drawCopy(plan, copy, copy === drawing.over);
 }
 
-function drawCopy({ context, place, k }, { placement, index, move, contours }, over) {
+function drawCopy({ context, place, k }, { placement, index, move, contours, label }, over) {
   if (!contours.length) return;
   const put = (x, y) => place(...move(x, y));
   outlinePath(context, contours, put);
   context.fillStyle = fillOf(index); context.fill("evenodd");
   context.strokeStyle = over ? "#b3261e" : "#14181d"; context.lineWidth = over ? 3 : 1; context.stroke();
   const [l, b, r, t] = pathBox(contours.slice(0, 1));
-  const [x, y] = partAt(index).view.flat.label ?? [(l + r) / 2, (b + t) / 2];
+  const [x, y] = label ?? [(l + r) / 2, (b + t) / 2];
   const [px, py] = put(x, y);
   const size = 11, most = Math.floor((Math.max(r - l, t - b) * k * 0.9) / (0.6 * size));
   const name = `${placement.part} ${placement.copy}${placement.mirrored ? " \u21c4" : ""}`;
@@ -96,7 +96,8 @@ function showSheet(sheet, number) {
       ["Offcut", sheet.offcut ? `${shown(sheet.offcut.width_mm)} \u00d7 ${shown(sheet.offcut.height_mm)} mm` : null]]),
     make("div", { class: "view" }, planControls(() => plan), make("div", { class: "stage" }, canvas), said),
     make("details", {}, make("summary", { text: "Parts on this sheet" }), make("ul", {}, ...links)));
-  const open = () => {
+  const open = () => whenParts(sheet.placements.map(({ part }) => rowOf.get(part)), drawn);
+  const drawn = () => {
     const drawing = sheetDrawing(sheet, number);
     plan = openPlan(canvas, pathBox([drawing.ground]), (now) => drawSheet(now, drawing), (at, click) => {
       drawing.over = at ? copyAt(plan, drawing, at) : null;

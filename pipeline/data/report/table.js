@@ -24,7 +24,7 @@ function ordered(rows) {
   return rows.sort((a, b) => sign * compare(key(report.rows[a]), key(report.rows[b])) || a - b);
 }
 
-function wanted(row) {
+function isWanted(row) {
   const found = row.name.toLocaleLowerCase().includes(byId("find").value.trim().toLocaleLowerCase());
   const show = byId("show").value;
   return found && (show === "all" || show === outcome(row) || (show === "findings" && row.findings > 0));
@@ -45,7 +45,7 @@ function tableRow(index) {
 }
 
 function fillTable() {
-  const rows = ordered([...report.rows.keys()].filter((i) => wanted(report.rows[i])));
+  const rows = ordered([...report.rows.keys()].filter((i) => isWanted(report.rows[i])));
   byId("table").tBodies[0].replaceChildren(...rows.slice(0, table.most).map(tableRow));
   byId("count").textContent = `${rows.length} of ${report.rows.length} parts`;
   const more = byId("more");

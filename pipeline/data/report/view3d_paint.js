@@ -4,11 +4,11 @@
 // a sight is {frame: [right, up, towards], centre, scale: px per mm, shift: [x, y] px, width, height, radius: mm}.
 "use strict";
 (function () {
-  const { unit, dot } = window.planishModel;
+  const { unit, dot } = window.planishPlaces;
   const LIGHT = unit([-0.45, 0.55, 0.7]);
   const FRONT = [0.78, 0.88, 0.96], BACK = [0.93, 0.87, 0.74], SHADE = 0.38, FIELD_SHADE = 0.22, DARK = 0.86;
   const SEAM = 1.1;   // px by which triangles overlap: else the ground shines through between them
-  const LIFT = 0.015;   // how far lines are brought forward, as a share of the radius
+  const LIFT = 0.05;   // how far lines are brought forward, as a share of the radius: half of a cell lies before its own far edge
 
   const dim = (colour, theme) => theme === "dark" ? colour.map((one) => one * DARK) : colour;
 

@@ -5,10 +5,11 @@ from math import acos, ceil, pi
 import numpy as np
 import pytest
 
+from stages.errors import NoSolutionError
 from stages.geometry.arcpath import area
 from stages.geometry.hausdorff import hausdorff
-from stages.geometry.inscribed import inscribed
-from stages.geometry.plane import CircularArc
+from stages.geometry.inscribed import chorded, inscribed
+from stages.geometry.plane import CircularArc, Segment
 from stages.geometry.sampling import resolved
 from tests.near import assert_near
 from tests.stages.write.patterns import polygon_edges
@@ -46,3 +47,17 @@ def test_no_short_chord_is_left_over() -> None:
     path = inscribed([CircularArc(np.zeros(2), 20.0, 0.0, TAU)], accuracy=0.02)
     steps = np.hypot(*(np.roll(path.vertices, -1, axis=0) - path.vertices).T)
     assert steps.min() > 0.5 * steps.max()
+
+
+def test_an_edge_that_is_a_point_has_no_corner_of_its_own() -> None:
+    first, second, third = polygon_edges((0.0, 0.0), (80.0, 0.0), (0.0, 60.0))
+    apex = Segment(np.array([0.0, 60.0]), np.array([0.0, 60.0 + 1e-13]))
+    path, numbers = chorded([first, second, apex, third], 0.02)
+    assert_near(path.vertices, [[0, 0], [80, 0], [0, 60]], bound=1e-12, why="ends of edges")
+    assert numbers.tolist() == [0, 1, 3]
+
+
+def test_edges_that_are_all_points_are_refused() -> None:
+    point = Segment(np.zeros(2), np.zeros(2))
+    with pytest.raises(NoSolutionError, match="a contour of points"):
+        inscribed([point, point], accuracy=0.02)

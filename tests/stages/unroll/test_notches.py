@@ -103,3 +103,35 @@ def test_the_seam_of_a_frustum_can_be_notched_on_both_sides() -> None:
     plain = notched(surface=RIGHT_FRUSTUM)
     areas = [contours.area(one.pattern.outer.edges) for one in (plain, found)]  # type: ignore[union-attr]
     assert_near([areas[0] - areas[1]], [0.06], bound=1e-12, why="two triangles of 0.03")
+
+
+ROUND: Table = {"kind": "flat", "outline": {"circle": {"center": [0, 0, 0], "radius": 50, "normal": [0, 0, 1]}}}
+
+
+@pytest.mark.parametrize("kind", ["v", "castle", "u"])
+@pytest.mark.parametrize("distance", [0, 1, 314])
+def test_a_round_plate_may_be_notched_where_its_outline_begins(kind: str, distance: int) -> None:
+    there, across = (
+        notched({"edge": "outline", "distance": at, "kind": kind}, surface=ROUND).pattern for at in (100, distance)
+    )
+    areas = [contours.area(one.outer.edges) for one in (there, across)]  # type: ignore[union-attr]
+    assert_near([areas[1]], [areas[0]], bound=1e-9, why="a circle is alike everywhere")
+    assert_near([arcpath.area(across.outer.path)], [areas[0]], bound=1e-9, why="lines and arcs")  # type: ignore[union-attr]
+
+
+def test_a_notch_may_run_across_the_corner_where_the_outline_begins() -> None:
+    found = notched({"edge": "outline", "distance": 1}, surface=PLATE)
+    assert_near([found.side("flat")["area"]], [6000.0 - 4.0], bound=1e-10, why="(0, .5), (0, 0), (2.5, 0), (1, 3)")
+    both = notched(*({"edge": "outline", "distance": at} for at in (1, 50, 310)), surface=PLATE)
+    assert_near([both.side("flat")["area"]], [6000.0 - 4.0 - 9.0], bound=1e-10, why="and two triangles")
+
+
+@pytest.mark.parametrize("distances", [(1, "318.5"), (0, 2), ("319.5", 317)])
+def test_notches_that_meet_across_the_beginning_are_refused(distances: tuple[object, object]) -> None:
+    found = passage(PLATE, notch=[{"edge": "outline", "distance": at} for at in distances])
+    assert found.codes("unroll", fatal=True) == ["notches-overlap"]
+
+
+def test_a_notch_as_wide_as_the_outline_is_refused() -> None:
+    found = passage(ROUND, notch=[{"edge": "outline", "distance": 10, "width": 315}])
+    assert found.codes("unroll", fatal=True) == ["notches-overlap"]

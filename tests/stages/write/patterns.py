@@ -54,6 +54,14 @@ def sector(part: str = "sector") -> FlatPattern:
     return pattern(part, contour(edges), (37.5, 65.0))
 
 
+def fan(part: str = "fan") -> FlatPattern:
+    """Return a sixth of a disc with an edge of no length at its middle, as a cone cut at its apex has one."""
+    rim = CircularArc(np.zeros(2), 90.0, 0.0, pi / 3.0)
+    first, last = rim.at(np.array([0.0, 1.0]))
+    edges = [rim, Segment(last, np.zeros(2)), Segment(np.zeros(2), np.array([0.0, 1e-13])), Segment(np.zeros(2), first)]
+    return pattern(part, contour(edges), (50.0, 30.0))
+
+
 def strip(part: str = "strip") -> FlatPattern:
     """Return a truncated cylinder, unrolled, with a hole."""
     ends = SINE.at(np.array([0.0, 1.0]))

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from stages.geometry.arcpath import ArcPath, area, length
 from stages.geometry.rigid import Rigid2
-from stages.model.cutfile import CutFile, Flavour, Machine, Version
+from stages.model.cutfile import CutFile, Flavour, Machine, Side, Version
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.write import judged, write
@@ -29,6 +29,7 @@ from tests.stages.write.cases import CASES, Case, document, machine, on, texts_o
 from tests.stages.write.patterns import (
     CHORD_MM,
     drop,
+    fan,
     line_mark,
     plate,
     sector,
@@ -53,6 +54,14 @@ def test_every_flavour_passes_and_holds_only_its_entities(case: Case) -> None:
         assert kinds <= wanted | ({"POLYLINE"} if case[1] == "R12" else set())
         assert document(text).acad_release == case[1]
         assert document(text).audit().errors == []
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("side", ["either", "outside"])
+def test_an_apex_is_one_corner_in_every_flavour(case: Case, side: Side) -> None:
+    outcome = write([fan()], None, replace(machine(case), side=side))
+    assert outcome.report.findings == ()
+    assert [metric.name for metric in outcome.report.metrics if not metric.passed] == []
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -177,6 +186,7 @@ def test_a_placed_part_reads_back_with_its_length_and_area(motion: Rigid2, case:
 
 
 def test_two_processes_write_the_same_bytes_in_every_flavour() -> None:
+    """Of these seeds, sets of the names of DXF classes are run through in different orders."""
     code = "\n".join([
         "from hashlib import sha256",
         "from tests.stages.write.cases import CASES, good, machine",
@@ -186,7 +196,7 @@ def test_two_processes_write_the_same_bytes_in_every_flavour() -> None:
         subprocess.run(
             [sys.executable, "-c", code], capture_output=True, text=True, check=True, env={"PYTHONHASHSEED": seed}
         )
-        for seed in ("1", "2")
+        for seed in ("1", "4")
     ]
     assert len(seen[0].stdout.split()) == len(CASES)
     assert seen[0].stdout == seen[1].stdout

@@ -19,7 +19,7 @@ from stages.geometry.arrays import norm
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import FILE_NAMES, FilePer
 from stages.model.pattern import FlatPattern
-from stages.model.patternlayers import PATTERN_LAYERS, STANDARD
+from stages.model.patternlayers import PATTERN_LAYERS, STANDARD, TURN
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.write import write
 from stages.write.piecedxf import pieces_text
@@ -28,7 +28,7 @@ from stages.write.readback import read
 from stages.write.readpieces import read_pieces
 from stages.write.tracing import as_pattern
 from tests.near import assert_near, assert_relative
-from tests.stages.write.patterns import CHORD_MM, drop, nesting, plate, sector, strip
+from tests.stages.write.patterns import CHORD_MM, drop, fan, nesting, plate, sector, strip
 from tests.stages.write.pieces import MACHINE, NOTCH_ON_ARC, flap
 
 PARTS = [as_pattern(part) for part in (flap(), plate(), sector(), strip(), drop())]
@@ -56,6 +56,13 @@ def test_every_part_has_a_file_of_its_own_and_all_are_in_one() -> None:
     assert list(found) == [*(f"flat/{part.part}.dxf" for part in PARTS), "pieces/bag.dxf"]
     names = [block.name for block in read_pieces(found["pieces/bag.dxf"]).blocks]
     assert names == ["FLAP_M", "PLATE_M", "SECTOR_M", "STRIP_M", "DROP_M"]
+
+
+def test_an_apex_is_one_turn_point() -> None:
+    text = written([as_pattern(fan())])["flat/fan.dxf"]
+    (block,) = read_pieces(text).blocks
+    corners = sorted((point.x, point.y) for point in block.points if point.layer == TURN)
+    assert_near(np.array(corners), [[0, 0], [45, 45 * 3**0.5], [90, 0]], bound=1e-9, why="decimals")
 
 
 def test_the_library_finds_nothing_but_the_standard() -> None:

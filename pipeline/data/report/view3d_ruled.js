@@ -1,52 +1,12 @@
-// The formed part of one piece, as triangles and lines that follow when it is rolled up.  Knows no screen.
+// A ruled part, as triangles and lines that follow when it is rolled up.  Knows no screen.
 //
-// A ruled part is two rails: both ends of its rulings, in space and flat.  A place on it is [row, u], row counted over
-// the rulings with fractions between two, and everything shown is linear between rulings and along them.  A mesh is its
-// vertices.  Positions here are relative to the middle of the box, so that single precision holds them.
+// It is two rails: both ends of its rulings, in space and flat.  A place on it is [row, u], row counted over the rulings
+// with fractions between two, and everything shown is linear between rulings and along them.  Positions are relative to
+// the middle of the box, so that single precision holds them.
 "use strict";
 (function () {
-  const COLUMNS = 6, PIECES = 24, TINY = 1e-30;
-
-  const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-  const add = (a, b, k) => [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]];
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const unit = (a) => { const n = Math.hypot(...a); return n > TINY ? [a[0] / n, a[1] / n, a[2] / n] : [0, 0, 0]; };
-  const turned = (a, axis, angle) => {
-    const c = Math.cos(angle), s = Math.sin(angle), w = cross(axis, a), d = dot(axis, a) * (1 - c);
-    return [a[0] * c + w[0] * s + axis[0] * d, a[1] * c + w[1] * s + axis[1] * d, a[2] * c + w[2] * s + axis[2] * d];
-  };
-
-  const bytes = (text) => Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
-  const floats = (text) => new Float32Array(bytes(text).buffer);
-  const wholes = (one) => one.bytes === 2 ? new Uint16Array(bytes(one.numbers).buffer) : new Uint32Array(bytes(one.numbers).buffer);
-
-  function positions(packed, size) {
-    const steps = new Uint16Array(bytes(packed.points).buffer), found = new Float64Array(steps.length);
-    for (let i = 0; i < steps.length; i++) found[i] = packed.low[i % size] + packed.step * steps[i];
-    return found;
-  }
-
-  function middle(points) {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < points.length; i++) {
-      low[i % 3] = Math.min(low[i % 3], points[i]);
-      high[i % 3] = Math.max(high[i % 3], points[i]);
-    }
-    return low.map((a, k) => (a + high[k]) / 2);
-  }
-
-  const moved = (points, by) => points.map((x, i) => x - by[i % 3]);
-
-  // Whether a place lies inside a closed polygon of places.
-  function inside(ring, row, u) {
-    let odd = false;
-    for (let i = 0; i + 3 < ring.length; i += 2) {
-      const [r0, u0, r1, u1] = [ring[i], ring[i + 1], ring[i + 2], ring[i + 3]];
-      if ((u0 > u) !== (u1 > u) && row < r0 + (r1 - r0) * (u - u0) / (u1 - u0)) odd = !odd;
-    }
-    return odd;
-  }
+  const { sub, add, dot, cross, unit, turned, bytes, floats, positions, middle, moved, inside, inTriangles, harmonic } = window.planishPlaces;
+  const COLUMNS = 6, PIECES = 24;
 
   class Ruled {
     constructor(part) {
@@ -224,16 +184,9 @@
     // The value of a field: along a ruling the radius is linear, so the curvature is harmonic.
     value(field, row, u) {
       const i = Math.max(0, Math.min(Math.floor(row), this.rows - 2)), t = row - i, k = field.values;
-      const along = (j) => this.harmonic(k[2 * j], k[2 * j + 1], u);
+      const along = (j) => harmonic(k[2 * j], k[2 * j + 1], u);
       const [a, b] = [along(i), along(i + 1)];
       return t === 0 ? a : t === 1 ? b : a + t * (b - a);
-    }
-
-    harmonic(a, b, u) {
-      if (!isFinite(a)) return u > 0 ? b / u : a;
-      if (!isFinite(b)) return u < 1 ? a / (1 - u) : b;
-      const under = b * (1 - u) + a * u;
-      return a * b === 0 || Math.abs(under) < TINY ? a * (1 - u) + b * u : a * b / under;
     }
 
     values(field) {
@@ -278,74 +231,5 @@
     }
   }
 
-  class Triangles {
-    constructor(part) {
-      const points = positions(part, 3);
-      this.origin = middle(points);
-      this.positions = Float32Array.from(moved(points, this.origin));
-      this.triangles = Uint32Array.from(wholes(part.triangles));
-      this.flat = part.flat && positions(part.flat, 2);
-      this.fields = part.fields.map((one) => ({ ...one, values: floats(one.values) }));
-      this.canForm = false;
-      const line = (kind) => (packed) => ({ kind, points: this.chained(wholes(packed)) });
-      this.drawn = [...part.seams.map(line("bend")), ...part.outlines.map(line("c0"))];
-      this.normal = this.normals();
-    }
-
-    chained(chain) {
-      const found = [];
-      for (let i = 0; i + 1 < chain.length; i++) for (const k of [chain[i], chain[i + 1]]) found.push(...this.vertex(k));
-      return Float32Array.from(found);
-    }
-
-    vertex(k) { return this.positions.subarray(3 * k, 3 * k + 3); }
-
-    normals() {
-      const found = new Float32Array(this.positions.length), t = this.triangles;
-      for (let i = 0; i < t.length; i += 3) {
-        const [a, b, c] = [0, 1, 2].map((k) => this.vertex(t[i + k])), n = cross(sub(b, a), sub(c, a));
-        for (let k = 0; k < 9; k++) found[3 * t[i + (k / 3 | 0)] + k % 3] += n[k % 3];
-      }
-      for (let i = 0; i < found.length; i += 3) found.set(unit(found.subarray(i, i + 3)), i);
-      return found;
-    }
-
-    form() {}
-    values(field) { return field.values; }
-
-    spot(corners, shares, field) {
-      const mix = (list, size, k) => corners.reduce((sum, c, j) => sum + shares[j] * list[size * c + k], 0);
-      const found = { point: [0, 1, 2].map((k) => mix(this.positions, 3, k)) };
-      if (this.flat) [found.x, found.y] = [mix(this.flat, 2, 0), mix(this.flat, 2, 1)];
-      if (field) found.value = mix(field.values, 1, 0);
-      return found;
-    }
-
-    find(place, field) {
-      const hit = this.flat && place.x !== undefined && inTriangles(this.flat, this.triangles, place.x, place.y);
-      return hit ? this.spot(hit.corners, hit.shares, field) : null;
-    }
-  }
-
-  // The triangle of plane points that a point lies in, or that it is nearly in.
-  function inTriangles(points, triangles, x, y) {
-    for (let i = 0; i < triangles.length; i += 3) {
-      const corners = [triangles[i], triangles[i + 1], triangles[i + 2]], shares = sharesOf(points, 2, corners, x, y);
-      if (shares && Math.min(...shares) >= -SLACK) return { corners, shares };
-    }
-    return null;
-  }
-  const SLACK = 1e-4;
-
-  // Shares of the corners at a point, by the first two coordinates; null for a triangle without area.
-  function sharesOf(points, size, corners, x, y) {
-    const [a, b, c] = corners.map((k) => [points[size * k], points[size * k + 1]]);
-    const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if (Math.abs(area) < TINY) return null;
-    const t = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area;
-    const s = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
-    return [1 - t - s, t, s];
-  }
-
-  window.planishModel = { of: (part) => part.kind === "ruled" ? new Ruled(part) : new Triangles(part), sharesOf, cross, unit, dot };
+  window.planishRuled = Ruled;
 })();

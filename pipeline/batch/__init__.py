@@ -1,0 +1,1 @@
+"""Many jobs: what is to be run, who runs it, what became of it."""

@@ -1,0 +1,139 @@
+"""A family of jobs: one job file as a template, and a table of values whose every row makes a job of it.
+
+The first row of the table holds paths as `--set` takes them (`part[0].surface.k0`), and `id` over the column that
+names the jobs, if there is one.  An empty cell leaves the template as it is.  The table is CSV in UTF-8 with commas,
+cells in quotes where they hold commas, quotes or ends of lines.  Rows stream: a table may have millions.
+"""
+
+import csv
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from pipeline.batch.entries import DIGITS, JOB_ENDS, Entries, Entry, Source, capped, job_id, read_some
+from pipeline.batch.identity import content
+from pipeline.paths import parsed
+from pipeline.store import safe_name
+from stages.errors import BadInputError, Problem
+
+ID = "id"
+MOST_COLUMNS = 1000
+MOST_LINES = 1000
+"""Of one row; a quote that is not closed ends its row here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table of values and the template that they are put into.
+
+    columns: the first row.  head: bytes of the first row; own: those of the template.
+    """
+
+    file: Path
+    template: Path
+    columns: tuple[str, ...]
+    own: bytes
+    head: bytes
+
+    @property
+    def source(self) -> Source:
+        """Return where its jobs come from."""
+        return Source("table", str(self.file.absolute()), str(self.template.absolute()))
+
+
+def table_of(file: Path, template: Path) -> Table:
+    """Return a table; `BadInputError` where a file is not there, or the first row is not one of paths."""
+    wrong = [Problem("no such file", file=str(path)) for path in (file, template) if not path.is_file()]
+    if template.suffix.lower() not in JOB_ENDS:
+        wrong.append(Problem("a template is one job file, TOML or JSON", file=str(template)))
+    if wrong:
+        raise BadInputError(*wrong)
+    with file.open("rb") as stream:
+        head, _ = next(_records(stream), (b"", 0))
+    try:
+        columns = tuple(cell.strip() for cell in _cells(head.decode("utf-8-sig")))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise BadInputError(Problem(f"the first row cannot be read: {error}", file=str(file), line=1)) from None
+    problems = [Problem(message, hint=hint, file=str(file), line=1) for message, hint in _head_troubles(columns)]
+    if problems:
+        raise BadInputError(*problems)
+    return Table(file, template, columns, read_some(template), head)
+
+
+def _head_troubles(columns: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield what is wrong with the first row of a table."""
+    if not any(columns):
+        yield "the first row holds no paths", "write paths as --set takes them, such as part[0].surface.k0"
+    if len(columns) > MOST_COLUMNS:
+        yield f"{len(columns)} columns", f"at most {MOST_COLUMNS}"
+        return
+    for name, count in Counter(columns).items():
+        if count > 1:
+            yield f'the column "{name}" is there {count} times', "once"
+        if name != ID and ("=" in name or not parsed(name)):
+            yield f'"{name}" is no path into a job file', f'such as part[0].surface.k0, or "{ID}"'
+
+
+def rows(table: Table) -> Entries:
+    """Yield the jobs of a table; a row that nothing can be made of is a job too, and a bad one."""
+    source, stem = table.source, job_id(table.template.stem)
+    names = table.columns.index(ID) if ID in table.columns else None
+    with table.file.open("rb") as stream:
+        offset = 0
+        for number, (record, size) in enumerate(_records(stream)):
+            own = record.strip()
+            if number and own:
+                start = offset + len(record) - len(record.lstrip())
+                name = (names is not None and _id(own, names)) or f"{stem}-{number:0{DIGITS}}"
+                yield source, Entry(name, start, len(own), number, content_of(table, own))
+            offset += size
+
+
+def content_of(table: Table, own: bytes) -> bytes:
+    """Return the digest of a row's job: of its template, of the paths of the table, and of the row."""
+    return content(table.own, table.head, own)
+
+
+def _records(stream: BinaryIO) -> Iterator[tuple[bytes, int]]:
+    """Yield the rows of a table, each with the end of its line, and how long it is; an open quote goes on."""
+    whole: list[bytes] = []
+    quotes = length = 0
+    for text, size in capped(stream):
+        whole.append(text)
+        length += size
+        quotes += text.count(b'"')
+        if quotes % 2 == 0 or len(whole) >= MOST_LINES:
+            yield b"".join(whole), length
+            whole, quotes, length = [], 0, 0
+    if whole:
+        yield b"".join(whole), length
+
+
+def _id(own: bytes, column: int) -> str | None:
+    """Return the id that a row gives itself; None where it gives none."""
+    try:
+        cell = _cells(own.decode())[column].strip()
+    except (UnicodeDecodeError, csv.Error, IndexError):
+        return None
+    return job_id(cell) if cell and safe_name(cell) else None
+
+
+def _cells(text: str) -> list[str]:
+    """Return the cells of one row."""
+    return next(csv.reader([text], strict=True), [])
+
+
+def settings(columns: Sequence[str], own: bytes) -> tuple[str, ...]:
+    """Return what a row sets, as `--set` takes it; `ValueError` saying why nothing can be made of it."""
+    try:
+        cells = _cells(own.decode())
+    except UnicodeDecodeError:
+        raise ValueError("the row is not UTF-8 text") from None
+    except csv.Error as error:
+        raise ValueError(f"the row cannot be read: {error}") from None
+    if len(cells) != len(columns):
+        raise ValueError(f"{len(cells)} cells where the table has {len(columns)} columns")
+    pairs = zip(columns, cells, strict=True)
+    return tuple(f"{path}={cell.strip()}" for path, cell in pairs if path != ID and cell.strip())

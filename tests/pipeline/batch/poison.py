@@ -1,0 +1,149 @@
+"""Jobs that harm the process that runs them, by what their first setting says; the others are made at once."""
+
+import ctypes
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+from typing import NoReturn
+from unittest.mock import patch
+
+from pipeline.batch import guard
+from pipeline.batch.guard import Files, Named
+from pipeline.batch.work import Limits, Record, Work
+from pipeline.jobfile import ReadJob
+
+WALL_S = 0.6
+MEMORY = 400 << 20
+GOOD = "good"
+ONCE = "waits the first time that it is run"
+
+
+def segfault() -> None:
+    ctypes.string_at(0)
+
+
+def loop() -> NoReturn:
+    signal.pthread_sigmask(signal.SIG_BLOCK, {*signal.Signals} - {signal.SIGKILL, signal.SIGSTOP})
+    while True:
+        pass
+
+
+def stop_itself() -> None:
+    os.kill(os.getpid(), signal.SIGSTOP)
+
+
+def hog() -> None:
+    held = []
+    while True:
+        held.append(bytearray(64 << 20))
+
+
+def recurse(depth: int = 0) -> int:
+    return recurse(depth + 1) + 1
+
+
+def stack() -> None:
+    """Recurse in C until the stack is full, which no exception tells."""
+    compare = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)
+    qsort = ctypes.CDLL(None).qsort
+
+    def again(_a: int | None, _b: int | None) -> int:
+        import sys
+
+        sys.setrecursionlimit(1 << 30)
+        two = (ctypes.c_int * 2)()
+        qsort(two, 2, 4, compare(again))
+        return 0
+
+    again(None, None)
+
+
+def freed_twice() -> None:
+    library = ctypes.CDLL(None)
+    library.malloc.restype, library.free.argtypes = ctypes.c_void_p, [ctypes.c_void_p]
+    block = library.malloc(64)
+    library.free(block)
+    library.free(block)
+
+
+def raise_exit() -> None:
+    raise SystemExit(0)
+
+
+def raise_interrupt() -> None:
+    raise KeyboardInterrupt
+
+
+def close_everything() -> None:
+    os.closerange(3, 256)
+
+
+def end_from_a_thread() -> None:
+    threading.Thread(target=lambda: os._exit(7)).start()
+    time.sleep(3600)
+
+
+ACTS = {
+    "segfault": segfault,
+    "abort": os.abort,
+    "freed twice": freed_twice,
+    "exit 0": lambda: os._exit(0),
+    "exit 3": lambda: os._exit(3),
+    "exit 255": lambda: os._exit(255),
+    "exit from a thread": end_from_a_thread,
+    "loop": loop,
+    "sleep": lambda: time.sleep(3600),
+    "stopped": stop_itself,
+    "hog": hog,
+    "recursion": recurse,
+    "stack": stack,
+    "SystemExit": raise_exit,
+    "KeyboardInterrupt": raise_interrupt,
+    "closed pipes": close_everything,
+    "killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
+}
+"""What a job does, by name."""
+
+
+def wait_once(begun: Path) -> None:
+    """Wait for ever, unless it has been begun before."""
+    if not begun.exists():
+        begun.touch()
+        time.sleep(3600)
+
+
+def poisoned(work: Work) -> Record:
+    """Run a job in a child, doing what its first setting says."""
+    kind = work.settings[0]
+    if kind == ONCE:
+        wait_once(Path(f"{work.draft}.begun"))
+    if kind in {GOOD, ONCE}:
+        with patch.object(guard, "_ended", _made):
+            return guard.run(work)
+
+    def act(_work: Work, _named: Named) -> ReadJob:
+        ACTS[kind]()
+        raise ValueError(f"{kind} has done no harm")
+
+    with patch.object(guard, "_read", act):
+        return guard.run(work)
+
+
+def _made(work: Work, _named: Named) -> tuple[Record, Files]:
+    return Record("made", "", 0.0, (), "", own=True), {"report.json": work.job.encode()}
+
+
+ENDLESS = {"loop", "sleep", "stopped"}
+
+
+def work(folder: Path, number: int, kind: str = GOOD, wall_s: float | None = None) -> Work:
+    """Return a job of a kind; one that ends by itself may take as long as a busy machine needs."""
+    limits = Limits(wall_s or (WALL_S if kind in ENDLESS else 60.0), MEMORY)
+    return Work(f"job-{number}", str(folder / "job.toml"), None, b"", (kind,), (), str(folder / f"{number}"), limits)
+
+
+def ends(_work: Work) -> NoReturn:
+    """End the child, whatever the job."""
+    os.abort()

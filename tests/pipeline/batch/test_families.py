@@ -1,0 +1,92 @@
+"""A template with a table of values: a job for each row."""
+
+from pathlib import Path
+
+import pytest
+
+from pipeline.batch.families import rows, settings, table_of
+from stages.errors import BadInputError
+from tests.pipeline.batch.inprocess import tree
+from tests.pipeline.batch.runs import go
+
+HEAD = "id,part[0].surface.k0,job.name\n"
+
+
+def family(folder: Path, text: str) -> Path:
+    (folder / "blade.toml").write_text("schema = 1\n")
+    (folder / "rows.csv").write_text(text, encoding="utf-8", newline="")
+    return folder / "rows.csv"
+
+
+def names(table: Path) -> list[str]:
+    return [entry.name for _, entry in rows(table_of(table, table.with_name("blade.toml")))]
+
+
+def test_a_row_goes_by_its_id_or_by_its_number(tmp_path: Path) -> None:
+    assert names(family(tmp_path, f"{HEAD}left,1,a\n,2,b\n\nright,3,c")) == ["left", "blade-0000002", "right"]
+
+
+def test_a_cell_in_quotes_may_hold_commas_quotes_and_ends_of_lines(tmp_path: Path) -> None:
+    table = table_of(family(tmp_path, f'{HEAD}a,1,"x, ""y""\nz"\nb,2,w\n'), tmp_path / "blade.toml")
+    content = table.file.read_bytes()
+    found = [content[entry.offset :][: entry.length] for _, entry in rows(table)]
+    assert [settings(table.columns, row) for row in found] == [
+        ("part[0].surface.k0=1", 'job.name=x, "y"\nz'),
+        ("part[0].surface.k0=2", "job.name=w"),
+    ]
+
+
+def test_an_empty_cell_leaves_the_template_as_it_is(tmp_path: Path) -> None:
+    assert settings(("a", "b"), b",2") == ("b=2",)
+
+
+@pytest.mark.parametrize(
+    ("row", "why"),
+    [
+        (b"1", "1 cells where the table has 2 columns"),
+        (b"1,2,3", "3 cells"),
+        (b"\xff,1", "not UTF-8"),
+        (b'"1,2', "cannot be read"),
+    ],
+)
+def test_a_row_that_sets_nothing_says_why(row: bytes, why: str) -> None:
+    with pytest.raises(ValueError, match=why):
+        settings(("a", "b"), row)
+
+
+def test_a_bad_row_is_a_bad_job_and_the_others_are_run(tmp_path: Path) -> None:
+    table = table_of(family(tmp_path, f"{HEAD}a,1,x\nb,1\nc,1,z\n"), tmp_path / "blade.toml")
+    assert go(tmp_path / "out", rows(table)) == ["a", "c"]
+    assert b"2 cells where the table has 3 columns" in tree(tmp_path / "out")["b/failure.json"]
+
+
+@pytest.mark.parametrize(
+    ("head", "message"),
+    [
+        ("a,a", 'the column "a" is there 2 times'),
+        ("a b", '"a b" is no path into a job file'),
+        ('"x"".y=1"', "is no path"),
+        (",,", "no paths"),
+        ("", "no paths"),
+        (",".join(f"c{i}" for i in range(2000)), "2000 columns"),
+    ],
+)
+def test_a_first_row_that_is_not_one_of_paths_is_refused(tmp_path: Path, head: str, message: str) -> None:
+    with pytest.raises(BadInputError, match=message.replace("[", r"\[")):
+        table_of(family(tmp_path, f"{head}\n1,2\n"), tmp_path / "blade.toml")
+
+
+def test_the_template_counts_towards_what_a_row_is(tmp_path: Path) -> None:
+    file = family(tmp_path, f"{HEAD}a,1,x\n")
+    template = tmp_path / "blade.toml"
+    go(tmp_path / "out", rows(table_of(file, template)))
+    assert go(tmp_path / "out", rows(table_of(file, template))) == []
+    template.write_text("schema = 1 # other\n")
+    assert go(tmp_path / "out", rows(table_of(file, template))) == ["a"]
+
+
+def test_a_quote_that_is_not_closed_spoils_some_rows_and_not_the_table(tmp_path: Path) -> None:
+    body = 'bad,1,"x\n' + "".join(f"r{i},1,y\n" for i in range(1500))
+    found = names(family(tmp_path, HEAD + body))
+    assert found[0] == "blade-0000001"
+    assert found[-1] == "r1499"
