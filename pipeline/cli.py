@@ -204,14 +204,14 @@ def schema(which: str | None) -> None:
 @AsJson
 @click.option("--quiet", is_flag=True, help="No messages but errors.")
 def report(folders: tuple[Path, ...], also: tuple[str, ...], *, as_json: bool, quiet: bool) -> None:
-    """Render the report of a finished job again, or compare those of two runs: exit code 1 if the second is worse."""
-    from pipeline.reports import compared, render_again
+    """Render the report of a finished job again, or the summary of a batch; or compare two runs: 1 if one is worse."""
+    from pipeline.reports import again, compared
 
     if len(folders) == 1:
-        again, paths = render_again(folders[0], also)
+        content, paths = again(folders[0], also)
         for path in () if quiet else paths:
             message(str(folders[0] / path))
-        click.echo(again.content if as_json else "", nl=False)
+        click.echo(content if as_json else "", nl=False)
         return
     data, worse = compared(folders, also, as_json=as_json)
     click.echo(data, nl=False)

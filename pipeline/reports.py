@@ -110,6 +110,21 @@ def _broken(error: Exception, file: Path) -> Problem:
     return Problem(f"is broken: {missing}", "", RUN_AGAIN, str(file))
 
 
+def again(out: Path, also: Sequence[str] = ()) -> tuple[bytes, list[str]]:
+    """Write the formats of a report, or the summary of a batch; return it as JSON, and the paths written."""
+    from pipeline.batch.entries import JOURNAL
+
+    if not (out / JOURNAL).is_file():
+        report, paths = render_again(out, also)
+        return report.content, paths
+    from pipeline.batch.summarised import summarise
+
+    if also:
+        raise BadInputError(Problem("a batch has a summary only", "--format", "give the folder of one of its jobs"))
+    paths = summarise(out)
+    return (out / "summary.json").read_bytes(), paths
+
+
 def render_again(out: Path, also: Sequence[str] = ()) -> tuple[Stored, list[str]]:
     """Write the formats of a report that its job asked for, and others; return it and the paths written."""
     report = stored(out)

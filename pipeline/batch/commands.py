@@ -185,10 +185,19 @@ def _run(order: "Order", jobs: "Entries | None", means: Means) -> None:
         sys.exit(EXIT_RESUMABLE)
     progress.clear()
     progress.end(counts)
+    if loop.drafts and not means.quiet:
+        click.echo(_summarised(order.out, counts.jobs), err=True)
     if counts.waiting or loop.left is None:
         click.echo(f"go on with: {order.command}", err=True)
         sys.exit(EXIT_RESUMABLE)
     sys.exit(0 if counts.all_made else EXIT_SOME_FAILED)
+
+
+def _summarised(out: Path, jobs: int) -> str:
+    """Summarise a batch if that takes seconds, and return where the summary lies, or how to have one."""
+    from pipeline.batch.summarised import FEW, summarise
+
+    return f"look at {out / summarise(out)[0]}" if jobs <= FEW else f"summary: planish report {out}"
 
 
 def _through(at: "Ready", jobs: "Entries | None", means: Means, stop: "Stop", progress: "Progress") -> "Loop":

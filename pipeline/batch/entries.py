@@ -27,6 +27,8 @@ LINE_ENDS = (".jsonl", ".ndjson")
 IN_FOLDERS = (".toml", *LINE_ENDS)
 JOURNAL = "journal.sqlite"
 """A folder that holds one is the output of a batch, and none of its files is a job."""
+TAKEN = (JOURNAL, "summary.html", "summary.json", "summary.csv")
+"""What lies beside the folders of jobs, and is the name of none."""
 
 DIGITS = 7
 """Of the number in a job id: ten million lines of one file stay in order; more have longer numbers."""
@@ -167,7 +169,7 @@ def capped(stream: BinaryIO) -> Iterator[tuple[bytes, int]]:
 def job_id(name: str) -> str:
     """Return the id of a job that is called so: a safe name, told apart by a digest where it had to be cut."""
     safe = safe_name(name)
-    if safe.casefold().startswith(JOURNAL):
+    if safe.casefold().startswith(TAKEN):
         safe = f"_{safe}"
     if len(name) <= LONGEST_NAME:
         return safe

@@ -4,6 +4,7 @@ Each figure is printed with its limit, and the run ends with 1 if one is above i
 on a machine with nothing else to do; the seconds of the processor beside them tell where it was not.
 """
 
+import argparse
 import multiprocessing
 import os
 import resource
@@ -203,8 +204,10 @@ def alone(name: str) -> None:
 
 def main() -> None:
     """Run the benches that are named, or all, each in a process of its own."""
+    asks = argparse.ArgumentParser("dev.py bench batch", description=__doc__.partition("\n")[0])
+    asks.add_argument("benches", nargs="*", choices=[*BENCHES, []], help="all of them if absent")
     failed = []
-    for name in sys.argv[1:] or BENCHES:
+    for name in asks.parse_args().benches or BENCHES:
         print(f"\n{name}", flush=True)
         child = multiprocessing.get_context("spawn").Process(target=alone, args=(name,))
         child.start()

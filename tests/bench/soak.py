@@ -184,6 +184,8 @@ def main() -> None:
     if words[0] == "serve":
         serve(*words[1:])
         return
+    if not {"kills", "operations", "full"} & {*words}:
+        sys.exit("usage: dev.py soak [kills N] [operations] [full N]")
     folder = Path(tempfile.mkdtemp(prefix="planish-soak-"))
     try:
         if "kills" in words:
