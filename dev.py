@@ -1,4 +1,4 @@
-"""Set-up and chores in one command each: `python3 dev.py demo | test | lint | types | imports | bench | soak | fuzz | gallery`.
+"""Set-up and chores in one command each: `python3 dev.py demo`, `test`, `lint`, `types`, `imports`, `bench`, `gallery`.
 
 `bench nest` compares the nesting with other engines, `bench batch` measures batches, `soak` kills them, `fuzz` runs
 jobs that nobody would write; each says how with `--help`.

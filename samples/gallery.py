@@ -37,6 +37,12 @@ SETTLED_MS = 6000
 """Of the page's own clock, after which both views are drawn."""
 
 
+def shown(sample: str) -> tuple[str, ...]:
+    """Return the names of all pictures of a sample."""
+    screens = tuple(f"report-{screen}" for screen in PAGES.get(sample, ()))
+    return (*PICTURES[sample], *screens, *(("traveller",) if sample in TRAVELLERS else ()))
+
+
 def main() -> int:
     """Return the exit code: that of the first job that is not made, or of the first picture that cannot be."""
     for sample in PICTURES:

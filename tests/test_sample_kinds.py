@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.job import job_of
 from pipeline.jobfile import read
-from samples.gallery import PICTURES
+from samples.gallery import shown
 from stages.model.part import KINDS
 from tests.samples import SAMPLES
 
@@ -44,4 +44,4 @@ def test_every_sample_is_a_job_that_says_what_it_is(path: Path) -> None:
 
 @pytest.mark.parametrize("path", MADE, ids=lambda path: path.parent.name)
 def test_every_sample_that_is_made_has_its_pictures_beside_it(path: Path) -> None:
-    assert {picture.stem for picture in path.parent.glob("*.png")} == set(PICTURES[path.parent.name])
+    assert {picture.stem for picture in path.parent.glob("*.png")} == set(shown(path.parent.name))

@@ -185,19 +185,26 @@ def _run(order: "Order", jobs: "Entries | None", means: Means) -> None:
         sys.exit(EXIT_RESUMABLE)
     progress.clear()
     progress.end(counts)
-    if loop.drafts and not means.quiet:
-        click.echo(_summarised(order.out, counts.jobs), err=True)
     if counts.waiting or loop.left is None:
         click.echo(f"go on with: {order.command}", err=True)
         sys.exit(EXIT_RESUMABLE)
+    said = _summarised(order.out, counts.jobs) if loop.drafts else ""
+    if said and not means.quiet:
+        click.echo(said, err=True)
     sys.exit(0 if counts.all_made else EXIT_SOME_FAILED)
 
 
 def _summarised(out: Path, jobs: int) -> str:
     """Summarise a batch if that takes seconds, and return where the summary lies, or how to have one."""
     from pipeline.batch.summarised import FEW, summarise
+    from stages.errors import BadInputError
 
-    return f"look at {out / summarise(out)[0]}" if jobs <= FEW else f"summary: planish report {out}"
+    if jobs > FEW:
+        return f"summary: planish report {out}"
+    try:
+        return f"look at {out / summarise(out)[0]}"
+    except BadInputError as error:
+        return str(error.problems[0])
 
 
 def _through(at: "Ready", jobs: "Entries | None", means: Means, stop: "Stop", progress: "Progress") -> "Loop":

@@ -72,8 +72,8 @@ MEANINGS: dict[str, str] = {
     "joined_area_error": "Relative difference of the area of the parts together, flat against formed.",
     "angle_error_deg": "Largest difference of a corner angle, flat against formed.",
     "metric_error": "Largest relative error of lengths squared in any direction at any place: 0 is no distortion.",
-    "max_strain": "Largest stretch or compression that laying it flat takes, in any direction. Of a mesh, verify judges "
-    "the mean about a vertex, and unroll tells the worst single triangle, such as the tip of a dart.",
+    "max_strain": "Largest stretch or compression that laying it flat takes, in any direction. Of a mesh, verify "
+    "judges the mean about a vertex, and unroll tells the worst single triangle, such as the tip of a dart.",
     "max_strain_largest": "The largest strain that fits what was measured.",
     "max_extension": "Largest stretch that laying it flat takes.",
     "max_compression": "Largest compression that laying it flat takes.",

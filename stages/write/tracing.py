@@ -65,8 +65,10 @@ def as_pattern(pattern: FlatPattern) -> FlatPattern:
 
 def drill_of(hole: Contour) -> Drill | None:
     """Return what a drill or punch needs to know of a hole that is made by one; None for all others."""
-    edge = hole.edges[0]
-    if hole.purpose == "cut" or len(hole.edges) > 1 or not isinstance(edge, CircularArc):
+    if hole.purpose == "cut" or len(hole.edges) != 1:
+        return None
+    (edge,) = hole.edges
+    if not isinstance(edge, CircularArc):
         return None
     if abs(abs(edge.sweep_rad) - 2.0 * pi) > ROUND:
         return None

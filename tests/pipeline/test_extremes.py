@@ -16,6 +16,7 @@ from pipeline.jobfile import read
 from pipeline.run import run_job
 from pipeline.store import digest
 from stages.errors import BadInputError
+from stages.model.curves import MOST_TURNS
 
 TEMPLATES = files("pipeline").joinpath("data", "init")
 FROM_FILES = {"mesh", "face"}
@@ -132,7 +133,7 @@ def test_a_part_too_thin_to_cut_is_refused_by_geometry(tmp_path: Path, kind: str
 
 
 def test_a_helix_of_countless_turns_is_refused(tmp_path: Path) -> None:
-    helix = {"helix": {"radius": 10, "pitch": 5, "turns": 21}}
+    helix = {"helix": {"radius": 10, "pitch": 5, "turns": MOST_TURNS + 1}}
     table = template("tangent") | {
         "part": [{"name": "part", "surface": {"kind": "tangent", "edge": helix, "from": 1, "to": 2}}]
     }

@@ -103,10 +103,11 @@ def page_of(folder: Path, number: int) -> str:
 @pytest.mark.readers
 def test_a_length_that_is_not_in_the_pages_is_not_found(folder: Path) -> None:
     report = json.loads((folder / "report.json").read_bytes())
-    report["parts"][1]["flat"]["edges"]["c0"] += 1.0
+    told = next(span for span in report["parts"][1]["tape"]["spans"] if span["what"] == "c0")
+    told["along_mm"] += 1.0
     files = {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     (folder / "other").mkdir()
     (folder / "other/traveller.pdf").write_bytes(traveller_pdf(Made(report, files)))
-    length = millimetres(report["parts"][1]["flat"]["edges"]["c0"])
+    length = millimetres(told["along_mm"])
     assert length in said(folder / "other", "-raw").split()
     assert length not in said(folder, "-raw").split()

@@ -48,11 +48,11 @@ class InProcess:
 
 
 def tree(out: Path) -> dict[str, bytes]:
-    """Return the files of an output folder but those of the journal."""
+    """Return the files of an output folder but those of the journal and the summary, which tells how long it took."""
     found = {}
     for folder, _, names in os.walk(out):
         for name in names:
             path = Path(folder, name)
-            if not path.name.startswith(("journal.sqlite", ".lock")):
+            if not path.name.startswith(("journal.sqlite", ".lock", "summary.")):
                 found[str(path.relative_to(out))] = path.read_bytes()
     return found

@@ -43,7 +43,8 @@ def test_a_batch_that_is_made_ends_with_0(
 ) -> None:
     jobs = lines_file(tmp_path / "in", 3)
     assert call("batch", jobs, "-o", tmp_path / "out") == 0
-    assert capsys.readouterr().err == "3 jobs: 3 made, 0 waiting\n"
+    look = f"look at {tmp_path / 'out' / 'summary.html'}\n"
+    assert capsys.readouterr().err == f"3 jobs: 3 made, 0 waiting\n{look}"
     assert call("batch", jobs, "-o", tmp_path / "out", "--quiet") == 0
     assert len(executor.ran) == 3
     assert capsys.readouterr() == ("", "")
@@ -59,7 +60,8 @@ def test_a_batch_with_a_job_that_is_not_made_ends_with_3_and_names_it(
     executor.job = rejecting
     jobs, out = lines_file(tmp_path / "in", 3), tmp_path / "out"
     assert call("batch", jobs, "-o", out) == 3
-    assert capsys.readouterr().err == "jobs-0000002: rejected: no\n3 jobs: 2 made, 1 rejected, 0 waiting\n"
+    told, look = "jobs-0000002: rejected: no\n3 jobs: 2 made, 1 rejected, 0 waiting\n", out / "summary.html"
+    assert capsys.readouterr().err == f"{told}look at {look}\n"
     assert call("batch", jobs, "-o", out) == 3
     assert "  jobs-0000002: rejected: no\n" in capsys.readouterr().err
     plain("status", out)

@@ -85,7 +85,7 @@ def test_a_u_as_deep_as_half_its_width_is_a_half_circle() -> None:
 @pytest.mark.parametrize(
     ("notches", "code"),
     [
-        ([{"kind": "castle", "distance": 1}], "notch-off-edge"),
+        ([{"kind": "castle", "distance": 1, "width": 2000}], "notch-off-edge"),
         ([{"kind": "u", "distance": 20}, {"kind": "castle", "distance": 23}], "notches-overlap"),
         ([{"kind": "castle", "distance": 20, "depth": 500}], "contour-crosses-itself"),
     ],
