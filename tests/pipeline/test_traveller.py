@@ -139,3 +139,10 @@ def test_a_finding_of_a_thousand_letters_goes_on_below(job: dict[str, bytes]) ->
     report["parts"][0]["stages"][0]["findings"].append(finding)
     said = " ".join(all_texts(traveller_pdf(Made(report, job)))).split()
     assert [one for one in said if one.startswith("word")] == words
+
+
+def test_a_part_with_a_seam_shows_the_size_of_what_is_cut(tmp_path: Path) -> None:
+    files = produced(tmp_path, PLATE + '[[part.seam]]\nedge = "outline"\nallowance = 5\n')
+    told = " ".join(texts(page_operators(files["traveller.pdf"])[0]))
+    assert "50.00 × 40.00 mm" in told, "40 by 30 mm and 5 mm more on every side"
+    assert "40.00 × 30.00 mm" not in told
