@@ -5,7 +5,8 @@ need is loaded by the child that meets one.  The children share it all as long a
 keeps the collector from touching it.
 
 One thread for linear algebra, set before numpy is loaded: children share the cores, and the last bits of a sum would
-depend on the number of threads.  The values are set, not proposed, so that every machine of a cluster computes alike.
+depend on the number of threads.  A nest is searched by one thread as well.  The values are set, not proposed, so that
+every machine of a cluster computes alike.
 """
 
 import gc
@@ -22,6 +23,7 @@ THREADS = (
     "MKL_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
     "NUMEXPR_NUM_THREADS",
+    "NUMBA_NUM_THREADS",
 )
 SERVER = os.getpid()
 """The process that loads this module; a child that is forked from it finds its parent here."""

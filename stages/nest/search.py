@@ -107,10 +107,17 @@ def pose(task: Task, first: Plan, seconds: float, seed: int) -> Posed | None:
     problem = Problem(kinds, items, bins, tuple(regions))
     start = tuple(_spot(kind, placed, hands, bin_) for kind, _, (bin_, placed) in rows)
     request = Request(
-        problem, start, not first.left, seconds, min(os.cpu_count() or 1, MOST_THREADS), seed,
+        problem, start, not first.left, seconds, min(threads(), MOST_THREADS), seed,
         tuple(bed.cost for bed in beds), tuple(bed.area_mm2 for bed in beds), tuple(bed.plain for bed in beds),
     )  # fmt: skip
     return Posed(request, hands, beds, [kept for _, kept, _ in rows])
+
+
+def threads() -> int:
+    """Return how many threads may search: the cores this process may use, or fewer where NUMBA_NUM_THREADS says so."""
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    said = os.environ.get("NUMBA_NUM_THREADS", "")
+    return max(min(usable, int(said)), 1) if said.isdecimal() else usable
 
 
 def bins_for(task: Task, first: Plan) -> list[Bed]:

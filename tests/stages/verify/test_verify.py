@@ -211,3 +211,22 @@ def test_only_verify_hands_out_certificates_and_they_carry_the_surface() -> None
     assert made.surface is made.certificate.surface
     assert made.surface is not None
     assert verify(made.surface, Tolerances()).report == made.reports["verify"], "the same surface, the same report"
+
+
+NO_NORMAL_WHERE_WORST: Table = {
+    "kind": "quintic-planar",
+    "p0": ["-0.496", "-0.058", "1.354"], "p1": ["-2.064", "5.888", "-0.484"],
+    "q0": ["-0.836", "-0.481", "0.948"], "q1": ["0.281", "1.875", "-2.489"],
+    "alpha0": "0.14", "alpha1": "0.1", "beta0": "-0.72", "beta1": "-8.45",
+    "alpha0_hat": "2.75", "alpha1_hat": "0.95", "beta0_hat": "4.57", "beta1_hat": "-1.82",
+}  # fmt: skip
+"""Both ends of the first ruling have no normal, and towards it the warp is largest."""
+
+
+def test_a_sampled_warp_beside_a_ruling_without_normals_is_near_the_proved_bound() -> None:
+    made = passage(NO_NORMAL_WHERE_WORST)
+    proved = made.value("verify", "max_warp_deg")
+    met = made.reports["verify"].detail["sampled_warp_deg"]
+    assert isinstance(met, float)
+    assert isinstance(proved, float)
+    assert 0.99 * proved < met <= proved
