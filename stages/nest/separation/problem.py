@@ -4,7 +4,7 @@ Discs inscribed in shapes and distances to the edges of regions are those of `sa
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
 import numpy as np
@@ -28,6 +28,18 @@ from stages.nest.separation.state import (
 
 HAIR_MM = 1e-7
 """Edges of a shape lie this far inside the true ones: parts that touch do not overlap."""
+
+FULL_DEG = 360.0
+ANY = ((0.0, FULL_DEG),)
+"""The spans of what may be turned anyhow."""
+
+FEW = (16, 8, 4)
+"""So many angles stand for any, where their tables are no more than `MOST_FEW`: a second of filling on two cores."""
+
+MOST_FEW = 2048
+
+MOST_TABLES = 4096
+"""Tables of one problem: about 10 kB each, and as much again for segments."""
 
 QUARTERS = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
 
@@ -83,13 +95,28 @@ class Problem:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arrays:
-    """A problem as the kernels take it."""
+    """A problem as the kernels take it.
+
+    rough: the rules with a few single angles for what may be turned anyhow, so that tables tell of most overlaps; the
+        rules themselves where there is no such kind, or there would be too many tables.
+    """
 
     shapes: Shapes
     rules: Rules
     regions: Regions
     items: Items
     bins: Bins
+    rough: Rules
+
+    @property
+    def has_rough(self) -> bool:
+        """Return whether the rough rules differ."""
+        return bool((self.rough.turn != self.rules.turn).any())
+
+    @property
+    def roughly(self) -> "Arrays":
+        """The same with the rough rules."""
+        return replace(self, rules=self.rough)
 
 
 def arrays(problem: Problem, hair_mm: float = HAIR_MM) -> Arrays:
@@ -100,7 +127,8 @@ def arrays(problem: Problem, hair_mm: float = HAIR_MM) -> Arrays:
         np.array([item.fixed for item in problem.items], dtype=np.bool_),
     )
     bins = Bins(np.array(problem.bins, dtype=np.float64).reshape(-1, 2))
-    return Arrays(_shapes(problem, hair_mm), _rules(problem), _regions(problem.regions), items, bins)
+    rules, rough = _rules(problem)
+    return Arrays(_shapes(problem, hair_mm), rules, _regions(problem.regions), items, bins, rough)
 
 
 def empty_layout(problem: Problem, given: Arrays) -> Layout:
@@ -195,24 +223,41 @@ def tips_of(shape: Polygon) -> Floats:
     return np.hstack([points[:-1], way / np.linalg.norm(way, axis=1)[:, None]])
 
 
-def _rules(problem: Problem) -> Rules:
-    """Return the spans and regions of each kind in each bin."""
+def _rules(problem: Problem) -> tuple[Rules, Rules]:
+    """Return the spans and regions of each kind in each bin; and the same with single angles for any."""
     count = (len(problem.kinds), len(problem.bins))
-    first, end, spans = (
-        np.zeros(count, dtype=np.int64),
-        np.zeros(count, dtype=np.int64),
-        list[tuple[float, float, float, float]](),
-    )
-    known: dict[tuple[Span, ...], int] = {}
+    ends = np.zeros((4, *count), dtype=np.int64)
+    spans = list[tuple[float, float, float, float]]()
+    known: dict[tuple[Span, ...], tuple[int, int, int, int]] = {}
+    few = few_angles(problem)
     for k, kind in enumerate(problem.kinds):
         for b in range(len(problem.bins)):
-            if kind.spans[b] not in known:
-                known[kind.spans[b]] = len(spans)
-                spans += [_span(span) for span in kind.spans[b]]
-            first[k, b] = known[kind.spans[b]]
-            end[k, b] = first[k, b] + len(kind.spans[b])
+            own = kind.spans[b]
+            if own not in known:
+                instead = few if own == ANY else ()
+                start, middle = len(spans), len(spans) + len(instead)
+                spans += [_span(span) for span in (*instead, *own)]
+                known[own] = (middle, len(spans), start, middle if instead else len(spans))
+            ends[:, k, b] = known[own]
     region = np.array([kind.regions for kind in problem.kinds], dtype=np.int64).reshape(count)
-    return Rules(region, first, end, np.array(spans, dtype=np.float64).reshape(-1, 4))
+    rows = np.array(spans, dtype=np.float64).reshape(-1, 4)
+    return Rules(region, ends[0], ends[1], rows), Rules(region, ends[2], ends[3], rows)
+
+
+def few_angles(problem: Problem) -> tuple[Span, ...]:
+    """Return the single angles that stand for any, as many as there may be tables; none if nothing is turned so.
+
+    Only a rectangle is made narrower, which is what they are for.
+    """
+    there = [
+        problem.kinds[kind] for kind in sorted({kind for item in problem.items for kind in (item.kind, item.other)})
+    ]
+    if not any(ANY in kind.spans and RECTANGLE in kind.regions for kind in there):
+        return ()
+    simple = sum(not kind.shape.interiors for kind in there)
+    pairs = simple * (simple + 1) // 2
+    count = next((few for few in FEW if few * pairs <= MOST_FEW), 0)
+    return tuple((k * FULL_DEG / count, k * FULL_DEG / count) for k in range(count))
 
 
 def _span(span: Span) -> tuple[float, float, float, float]:

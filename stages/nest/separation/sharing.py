@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -125,8 +125,7 @@ def within(given: Arrays, chosen: Sequence[int]) -> Arrays:
     region = given.rules.region.copy()
     closed = np.setdiff1d(np.arange(region.shape[1]), np.asarray(chosen, dtype=np.int64))
     region[:, closed] = NOWHERE
-    rules = given.rules._replace(region=region)
-    return Arrays(given.shapes, rules, given.regions, given.items, given.bins)
+    return replace(given, rules=given.rules._replace(region=region), rough=given.rough._replace(region=region))
 
 
 def parted(bench: Bench, given: Arrays, patience: int, effort: tuple[int, int, int], strikes: int = 1) -> float:
@@ -151,6 +150,13 @@ def place(given: Arrays, layout: Layout, pose: Pose, item: int, spot: Spot) -> N
     if low != high:
         c, s, low = np.cos(angle), np.sin(angle), angle
     lay(given.shapes, layout, pose, item, spot.kind, spot.bin, span, low, c, s, spot.x, spot.y)
+
+
+def laid_again(bench: Bench, given: Arrays) -> None:
+    """Lay every item that is not fixed where it lies, in the nearest angle that the rules know."""
+    for item, spot in enumerate(spots_of(bench.layout)):
+        if spot.bin >= 0 and not given.items.fixed[item]:
+            place(given, bench.layout, bench.pose, item, spot)
 
 
 def _span_of(rules: Rules, kind: int, bin_: int, angle: float) -> int:

@@ -15,7 +15,7 @@ import numpy as np
 from stages.nest.separation.pool import Pool
 from stages.nest.separation.problem import Arrays
 from stages.nest.separation.separate import close_up, copy_places
-from stages.nest.separation.sharing import Bench, Shared, Wish, parted, same_again, swap_large, within
+from stages.nest.separation.sharing import Bench, Shared, Wish, laid_again, parted, same_again, swap_large, within
 from stages.nest.separation.state import Layout
 
 EFFORT = (20, 12, 8)
@@ -31,6 +31,9 @@ STRIKES = 3
 FIRST_STEP, LEAST_STEP = 0.01, 0.001
 """Shares by which the width shrinks while something new is looked for."""
 
+ROUGH = 0.5
+"""Up to this share of the time before that, what may be turned anyhow is turned by a few angles."""
+
 POLISH, POLISH_STEP, POLISH_LEAST = 0.75, 5e-4, 1e-5
 """From this share of the time on, and the shares by which the width shrinks from then on to the end."""
 
@@ -43,15 +46,19 @@ def shorter(bench: Bench, shared: Shared, wish: Wish) -> None:
     given = within(bench.given, shared.used)
     begin = monotonic()
     turn = begin + POLISH * (wish.end - begin)
+    if given.has_rough:
+        explore(bench, given.roughly, shared, bin_, begin + ROUGH * (turn - begin))
     explore(bench, given, shared, bin_, turn)
     polish(bench, given, shared, bin_, (turn, wish.end))
 
 
 def explore(bench: Bench, given: Arrays, shared: Shared, bin_: int, end: float) -> None:
     """Shrink the width by shares that a layout which is not disturbed cannot bring, each thread by itself."""
-    own, width, step = same_again(shared.layout), shared.width, FIRST_STEP
-    pool = Pool()
     shared.take(bench.layout)
+    if bench.given.has_rough:
+        laid_again(bench, given)
+    own, width, step = same_again(bench.layout), shared.width, FIRST_STEP
+    pool = Pool()
     while monotonic() < end:
         narrow(bench, given, bin_, width * (1.0 - step))
         left = parted(bench, given, PATIENCE, EFFORT, STRIKES)

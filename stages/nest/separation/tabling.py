@@ -1,7 +1,7 @@
 """The tables of a problem: which pairs of kinds get one, and their filling.
 
-Threads fill them together, once, and all look them up.  Kinds with holes and angles that are not lists get none; where
-there would be too many, those of the kinds with most copies come first.
+Threads fill them together, once, and all look them up.  Kinds with holes get none, nor do angles that are not lists but
+for the few that stand for any; where there would be too many, those of the kinds with most copies come first.
 """
 
 from collections import Counter
@@ -10,12 +10,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from stages.nest.separation.convolution import GRID, NODES
-from stages.nest.separation.problem import Arrays, Problem
+from stages.nest.separation.problem import MOST_TABLES, Arrays, Problem
 from stages.nest.separation.state import Floats, Tables, Whole
 from stages.nest.separation.tables import NO_TABLE, fill
-
-MOST_TABLES = 4096
-"""Tables of one problem: about 10 kB each, and as much again for segments."""
 
 MOST_RELATIONS = 128
 """Relative angles; where there are more, no table would be asked often enough to be worth its filling."""
@@ -49,7 +46,7 @@ def tables_for(problem: Problem, given: Arrays, threads: int = 1) -> Tables:
 
 def _wanted(problem: Problem, given: Arrays, relation: Whole) -> list[Beside]:
     """Return all that may lie beside one another, those with most copies first."""
-    rules = given.rules
+    rules = given.rough
     copies = Counter(kind for item in problem.items for kind in {item.kind, item.other})
     spans = {kind: _spans(rules.turn[kind], rules.turns[kind]) for kind in copies}
     simple = [kind for kind in sorted(copies) if not problem.kinds[kind].shape.interiors]

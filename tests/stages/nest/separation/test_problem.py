@@ -11,6 +11,7 @@ from shapely import MultiPolygon, Point, Polygon, box
 from stages.geometry.arrays import EPS
 from stages.nest.separation.problem import (
     HAIR_MM,
+    MOST_FEW,
     NOWHERE,
     RECTANGLE,
     Item,
@@ -18,6 +19,7 @@ from stages.nest.separation.problem import (
     Problem,
     arrays,
     edges_of,
+    few_angles,
     inner,
     polygons,
     tips_of,
@@ -119,6 +121,27 @@ def test_spans_are_in_radians_with_exact_quarter_turns() -> None:
         [radians(10.0), radians(10.0), cos(radians(10.0)), sin(radians(10.0))],
     ]
     assert_near(second, wanted, bound=1e-15, why="closed form")
+
+
+def test_what_may_be_turned_anyhow_has_a_few_angles_in_the_rough_rules() -> None:
+    given_ = arrays(squares(FREE, UPRIGHT))
+    rows = given_.rough.span[given_.rough.turn[0, 0] : given_.rough.turns[0, 0]]
+    assert (rows[:, 0] == rows[:, 1]).all()
+    assert_near(np.degrees(rows[:, 0]), np.arange(16) * 22.5, bound=1e-12, why="a turn in equal steps")
+    (wide,) = given_.rules.span[given_.rules.turn[0, 0] : given_.rules.turns[0, 0]]
+    assert_near(wide[:2], (0.0, 2.0 * pi), bound=EPS, why="any angle")
+    assert given_.rough.turn[1, 0] == given_.rules.turn[1, 0], "a list stays as it is"
+    assert given_.has_rough
+    assert not given_.roughly.has_rough
+    assert not arrays(squares(BY_QUARTERS, UPRIGHT)).has_rough
+
+
+@pytest.mark.parametrize(("kinds", "angles"), [(10, 16), (22, 8), (31, 4), (32, 0)])
+def test_there_are_so_many_of_them_that_there_are_not_too_many_tables(kinds: int, angles: int) -> None:
+    many = tuple(Kind(oblong(1.0, 1.0), (FREE,), (RECTANGLE,)) for _ in range(kinds))
+    problem = Problem(many, tuple(Item(k, k) for k in range(kinds)), ((10.0, 5.0),))
+    assert len(few_angles(problem)) == angles
+    assert angles * kinds * (kinds + 1) // 2 <= MOST_FEW
 
 
 def test_each_bin_has_its_own_spans_and_regions() -> None:

@@ -10,7 +10,7 @@ from shapely import MultiPolygon, Polygon, affinity
 
 from stages.nest.separation.convolution import GRID, convolved, outline_of
 from stages.nest.separation.laying import overlap, overlap_with, pose_in
-from stages.nest.separation.problem import HAIR_MM, Item, Span, inner
+from stages.nest.separation.problem import FEW, HAIR_MM, Item, Span, inner
 from stages.nest.separation.separate import measure, measured, seed_all
 from stages.nest.separation.tables import looked_up, wound
 from stages.nest.separation.tabling import MOST_RELATIONS, _relations, tables_for
@@ -139,11 +139,18 @@ def test_what_touches_along_an_edge_or_interlocks_does_not_overlap() -> None:
     assert place_of(bay, 1, 0.0, 9.999, 10.0) > 0.0
 
 
-def test_shapes_with_holes_and_free_angles_have_no_tables() -> None:
+def test_shapes_with_holes_and_ranges_of_angles_have_no_tables() -> None:
     on = scene([kind(frame(60.0, 40.0)), kind(oblong(10.0, 10.0))])
     assert len(on.tables.cost) == 0, "one copy of each: the square has nothing beside it but the frame"
+    banded = ((10.0, 20.0),)
+    ranged = scene([kind(oblong(60.0, 40.0), banded), kind(oblong(10.0, 10.0), banded)])
+    assert len(ranged.tables.cost) == 0
     free = scene([kind(oblong(60.0, 40.0), FREE), kind(oblong(10.0, 10.0), FREE)])
-    assert len(free.tables.cost) == 0
+    assert len(free.tables.cost) == FEW[0], "for the few angles that stand for any"
+    c, s = turn(22.0)
+    wide = int(free.given.rules.turn[1, 0])
+    pose_in(free.tables, free.given.shapes, 1, wide, c, s, free.pose)
+    assert free.pose.span[0] == -1, "any angle itself has none"
     put(on, 0, 0.0, 0.0)
     assert place_of(on, 1, 0.0, 0.0, 0.0) == 0.0, "in the hole: the shapes themselves are asked"
     assert place_of(on, 1, 0.0, 20.0, 0.0) > 0.0
