@@ -1,8 +1,8 @@
 """Set-up and chores in one command each: `python3 dev.py demo`, `test`, `lint`, `types`, `imports`, `bench`, `gallery`.
 
-`bench nest` compares the nesting with other engines, `bench batch` measures batches, `soak` kills them, `fuzz` runs
-jobs that nobody would write; each says how with `--help`.
-The standard library only, on Linux, macOS and Windows, Python 3.11 or later.  The environment lies in `.venv`; its
+`bench` is one table of planish beside what else there is, `bench nest`, `bench batch` and `bench kernels` go deeper;
+`soak` kills batches, `fuzz` runs jobs that nobody would write, `mutants` plants faults; each says how with `--help`.
+The standard library only, Python 3.11 or later.  The environment lies in `.venv`; its
 packages are those of `requirements.lock`, checked by their hashes, through `uv` where it is on the PATH and through
 venv and pip where it is not.  A stamp of lock, project file and Python version makes the second run quick.
 """
@@ -32,11 +32,13 @@ CHORES: dict[str, list[list[str]]] = {
     "types": [["-m", "mypy"]],
     "imports": [["-c", "from importlinter.cli import lint_imports_command; lint_imports_command()"]],
     "gallery": [["samples/gallery.py"]],
-    "bench": [["-m", "pytest", "-o", "addopts=", "--benchmark-only", "tests/bench"]],
+    "bench": [["-m", "tests.bench"]],
+    "bench kernels": [["-m", "pytest", "-o", "addopts=", "--benchmark-only", "tests/bench"]],
     "bench nest": [["-m", "tests.bench.nest"]],
     "bench batch": [["-m", "tests.bench.batch"]],
     "soak": [["-m", "tests.bench.soak"]],
     "fuzz": [["-m", "tests.fuzz"]],
+    "mutants": [["-m", "tests.mutants"]],
 }
 
 

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.asmade_nominal import ISO, Nominal
+from pipeline.asmade_nominal import Nominal
 from pipeline.asmade_rows import PointReading, exact
 from pipeline.asmade_sheet import point_tolerance
+from pipeline.asmade_sizes import ISO
 from stages.errors import BadInputError, Problem
 from stages.geometry.arrays import Values
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
 
-from pipeline.asmade_nominal import ISO, Dimension, Nominal
+from pipeline.asmade_nominal import Nominal
+from pipeline.asmade_sizes import ISO, Dimension
 from pipeline.units import MM_PER
 from stages.errors import Problem
 

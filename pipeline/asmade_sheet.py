@@ -26,8 +26,9 @@ from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
 
-from pipeline.asmade_nominal import Nominal, length_tolerance
+from pipeline.asmade_nominal import Nominal
 from pipeline.asmade_rows import COLUMNS, FORMULA, POINTS, Measured, SheetReader, exact, shown
+from pipeline.asmade_sizes import length_tolerance
 from stages.errors import BadInputError, Problem
 
 REQUIRED = frozenset({"part", "what", "measured", "unit", "uncertainty"})

@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from pipeline.inturn import Each, in_turn
 from stages.geometry.arcpath import transform
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
@@ -27,12 +28,16 @@ DRAWING = re.compile(r"cut/.*\.dxf")
 
 
 def written(
-    patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Machine, options: NestOptions
+    patterns: Sequence[FlatPattern],
+    nesting: Nesting | None,
+    machine: Machine,
+    options: NestOptions,
+    each: Each = in_turn,
 ) -> Outcome[tuple[CutFile, ...]]:
     """Return the files of a job, those of its sheets certified as they read; the report tells the gaps and overlaps."""
     from stages.write import write
 
-    outcome = write(patterns, nesting, replace(machine, common_kerf_mm=options.common_kerf_mm))
+    outcome = write(patterns, nesting, replace(machine, common_kerf_mm=options.common_kerf_mm), each)
     report = outcome.report
     if nesting is None or not nesting.layouts or not report.passed:
         return outcome

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pipeline.run import Step
     from stages.errors import Problem
 
-EXIT_WORSE, EXIT_USAGE, EXIT_INTERNAL, EXIT_INTERRUPTED = 1, 2, 4, 130
+EXIT_WORSE, EXIT_USAGE, EXIT_SHORT, EXIT_INTERNAL, EXIT_INTERRUPTED = 1, 2, 3, 4, 130
 TRACEBACK = "PLANISH_TRACEBACK"
 """Set in the environment, it shows where in the program an internal error arose."""
 
@@ -46,7 +46,7 @@ def cli() -> None:
 @Settings
 @Allow
 @click.option("--layout", type=click.Path(path_type=Path), metavar="FILE", help="Lay parts as layout.json says.")
-@click.option("--workers", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes for the parts.")
+@click.option("--workers", type=click.IntRange(1, 256), default=1, show_default=True, help="Processes to run it in.")
 @AsJson
 @click.option("--quiet", is_flag=True, help="No messages but errors.")
 def run(
@@ -74,8 +74,9 @@ def run(
         ready = laid(ready, layout, message, quiet=quiet)
     target = out or Path("out") / safe_name(ready.name)
     with replacement(target, keep=[job] if layout is None else [job, layout]) as draft:
-        result = run_job(ready, silent if quiet else tell, spread(workers))
-        report, files = outputs(result)
+        way = spread(workers)
+        result = run_job(ready, silent if quiet else tell, way)
+        report, files = outputs(result, way.each)
         write_files(draft, files)
     if not quiet:
         for line in (*sheet_lines(result), *cost_lines(result), *left_out_lines(result)):
@@ -269,10 +270,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def failed(error: Exception, *, as_json: bool) -> int:
     """Say what went wrong, and return the exit code."""
-    from stages.errors import BadInputError, Problem
+    from stages.errors import BadInputError, NoSolutionError, Problem
 
     if isinstance(error, BadInputError):
         return _complain(error.problems, as_json=as_json)
+    if isinstance(error, NoSolutionError):
+        _complain([Problem(str(error))], as_json=as_json)
+        return EXIT_SHORT
     if isinstance(error, click.ClickException):
         return _complain([Problem(error.format_message(), hint="planish --help shows the usage")], as_json=as_json)
     if os.environ.get(TRACEBACK):

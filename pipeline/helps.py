@@ -6,7 +6,7 @@ off more easily, 0.3 t, from 0.3 to 0.8 mm; the least of these where no thicknes
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from pipeline.dxftables import DxfTable, machine_of
+from pipeline.dxftables import DxfTable, alone_troubles, machine_of
 from pipeline.processes import limits
 from pipeline.processtables import STEEPEST_DEG, LeadTable, ProcessTable, TabsTable
 from pipeline.stocktables import NestTable, StockTable
@@ -69,6 +69,10 @@ def help_troubles(
 ) -> Iterator[Trouble]:
     """Yield helps that do not go together with the rest of a job, by their keys from its top."""
     machine = machine_of(dxf)
+    if nest.common_line and process.kerf is None and process.type is None:
+        hint = "give process.kerf or process.type: neighbours lie one kerf apart"
+        yield Trouble("nest.common_line", "the width of the cut is not known", hint)
+    yield from alone_troubles(dxf, common_line=nest.common_line)
     if process.kerf_compensation == "offset":
         kerf = limits(process, thickness_mm).get("kerf")
         yield from _offset_troubles(None if kerf is None else kerf.value, nest, stock)

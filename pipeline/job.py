@@ -6,6 +6,8 @@ from fractions import Fraction
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
+from msgspec import structs
+
 from pipeline.decode import canonical
 from pipeline.dxftables import machine_of
 from pipeline.helps import helps_of, unused
@@ -69,7 +71,18 @@ class Job:
 
 
 def job_of(read: ReadJob) -> Job:
-    """Return the job that a job file describes."""
+    """Return the job that a job file describes, placed by the layout that it names; `BadInputError` for a wrong one."""
+    job = _job(read)
+    if read.layout is None:
+        return job
+    from pipeline.layoutfile import layout_of
+    from pipeline.layouts import laid
+
+    file, content = read.layout
+    return laid(job, layout_of(content, file))
+
+
+def _job(read: ReadJob) -> Job:
     tables = read.tables
     material, material_notes = _material(tables.material)
     process, process_notes = _process(tables.process, material)
@@ -123,8 +136,9 @@ def _touching(read: ReadJob, number: int, part: Part) -> Part:
 
 
 def _digest(read: ReadJob) -> str:
-    """Return the sha256 of everything that the job is made of."""
-    whole = sha256(canonical(read.tables))
+    """Return the sha256 of everything that the job is made of; where copies lie does not count."""
+    tables = structs.replace(read.tables, nest=structs.replace(read.tables.nest, layout=None))
+    whole = sha256(canonical(tables))
     for number, source in sorted(read.meshes.items()):
         _add_mesh(whole, number, source.mesh)
     for number, faces in sorted(read.faces.items()):

@@ -5,7 +5,7 @@ of complaints are looked up last (`locate`).  The tables of parts are those of `
 this version does what it says.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path as FilePath
@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 from msgspec import Meta, field
 
-from pipeline.decode import Complaint, Walk, decode
-from pipeline.dxftables import DxfTable, alone_troubles
+from pipeline.decode import Walk, decode
+from pipeline.dxftables import DxfTable
 from pipeline.helps import help_troubles
 from pipeline.jobrules import repeated, taken_by_blanks, too_many_copies
-from pipeline.locate import Place, nearest, places
-from pipeline.parse import DEEP, SET, is_json, override, parse, read_bytes, refuse_huge, text_of
-from pipeline.paths import Path, written
+from pipeline.parse import DEEP, override, parse, read_bytes, refuse_huge, text_of
+from pipeline.placed import placed
 from pipeline.plaintext import plain
 from pipeline.processtables import ProcessTable
-from pipeline.reach import Reach, silent
-from pipeline.sources import Seen, Sources, Tell, unnoticed
+from pipeline.reach import Reach, Seen, silent, unnoticed
+from pipeline.sources import Sources, Tell
 from pipeline.stocktables import NestTable, StockTable, grain_troubles, other_material
 from pipeline.units import JOB_UNITS
 from stages.errors import BadInputError, Problem
 from stages.model.caps import MOST_PARTS, MOST_ROWS, MOST_STOCK
 from stages.model.curves import Table, Trouble, negatives, not_positive
+from stages.model.ducts import blank_count
 from stages.model.meshes import MeshNormals
 from stages.model.part import PartSpec
 from stages.model.scalars import Angle, Length, Number
@@ -166,13 +166,9 @@ class JobFile(Table, frozen=True, kw_only=True):
         yield from repeated("stock", "id", [stock.name for stock in self.stock])
         yield from too_many_copies([part.quantity for part in self.part])
         yield from taken_by_blanks(self.part)
-        yield from mate_troubles([(part.name, part.seam) for part in self.part])
+        yield from mate_troubles([(part.name, part.seam, blank_count(part.surface)) for part in self.part])
         yield from grain_troubles(self.part, self.stock, self.material.grain)
         yield from other_material(self.stock, self.material.name, self.material.thickness)
-        if self.nest.common_line and self.process.kerf is None and self.process.type is None:
-            hint = "give process.kerf or process.type: neighbours lie one kerf apart"
-            yield Trouble("nest.common_line", "the width of the cut is not known", hint)
-        yield from alone_troubles(self.dxf, common_line=self.nest.common_line)
         thickness = None if self.material.thickness is None else float(self.material.thickness)
         yield from help_troubles(self.process, self.dxf, self.nest, self.stock, thickness)
         for i, part in enumerate(self.part):
@@ -189,6 +185,7 @@ class ReadJob:
 
     inputs: name and sha256 of the job file and of every drawing and mesh that it points at.
     meshes, faces: those of the parts that have them, by their numbers; touched: the meshes that else they point at.
+    layout: file and bytes of where copies lie already, if the job says so.
     """
 
     tables: JobFile
@@ -198,6 +195,7 @@ class ReadJob:
     meshes: Mapping[int, "MeshSource"] = field(default_factory=dict)
     faces: Mapping[int, "CadSource"] = field(default_factory=dict)
     touched: Mapping[int, "Mapping[MeshNormals, MeshSource]"] = field(default_factory=dict)
+    layout: tuple[FilePath, bytes] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +204,7 @@ class Given:
 
     text: its bytes, where they are not those of the file; line: its number in a file of JSON Lines, for messages.
     allow: the folders that the files it names may lie in, beside its own; None: anywhere.
-    seen: is told of every file that is looked for.
+    seen: is told of every file that is looked for, and read.
     """
 
     text: bytes | None = None
@@ -226,7 +224,8 @@ def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent, give
         if given.line is None:
             raise
         raise BadInputError(*(_on_line(problem, str(file), given.line) for problem in error.problems)) from None
-    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched)
+    laid = None if sources.layout is None else (file.parent / sources.layout[0], sources.layout[1])
+    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched, laid)
 
 
 def _on_line(problem: Problem, file: str, line: int) -> Problem:
@@ -248,14 +247,14 @@ def read_as(
     refuse_huge(raw, file)
     set_paths = override(raw, settings)
     walk = Walk(unit=_unit(raw))
-    sources = Sources(Reach(file.parent, given.allow, tell), walk.unit, seen=given.seen)
+    sources = Sources(Reach(file.parent, given.allow, tell, given.seen), walk.unit)
     walk.resolve = sources.resolve
     try:
         tables = decode(walk, wanted, raw)
     except RecursionError:
         raise BadInputError(Problem(DEEP, file=str(file))) from None
     if tables is None:
-        raise BadInputError(*_placed(walk.complaints, text, file, set_paths))
+        raise BadInputError(*placed(walk.complaints, text, file, set_paths))
     return tables, sources, ((plain(file.name), sha256(content).hexdigest()), *sources.digests)
 
 
@@ -263,22 +262,3 @@ def _unit(raw: dict[str, object]) -> str:
     """Return the unit of bare lengths; a wrong one is complained about when its turn comes."""
     unit = raw.get("units")
     return unit if isinstance(unit, str) and unit in JOB_UNITS else "mm"
-
-
-def _placed(complaints: list[Complaint], text: str, file: FilePath, set_paths: Sequence[Path]) -> list[Problem]:
-    """Return the complaints as problems with their places, in the order of the file."""
-    try:
-        found = places(text, is_json=is_json(file), wanted=[complaint.path for complaint in complaints])
-    except RecursionError:
-        found = {}
-    problems = [_problem(complaint, nearest(found, complaint.path), str(file), set_paths) for complaint in complaints]
-    return sorted(problems, key=lambda problem: (problem.file, problem.line or 0, problem.column or 0))
-
-
-def _problem(complaint: Complaint, place: Place | None, file: str, set_paths: Sequence[Path]) -> Problem:
-    """Return one complaint with the file and place it comes from, or `--set`."""
-    path = written(complaint.path)
-    if any(complaint.path[: len(given)] == given for given in set_paths):
-        return Problem(complaint.message, path=path, hint=complaint.hint, file=SET)
-    line, column = (None, None) if place is None else place.key if complaint.at == "key" else place.value
-    return Problem(complaint.message, path=path, hint=complaint.hint, file=file, line=line, column=column)

@@ -13,12 +13,13 @@ from math import inf
 from pathlib import Path as FilePath
 
 from pipeline.decode import Complaint, suggestion
-from pipeline.locate import nearest, places
-from pipeline.parse import is_json, parse, read_bytes, text_of
-from pipeline.paths import Path, written
+from pipeline.parse import parse, read_bytes, refuse_huge, text_of
+from pipeline.paths import Path
+from pipeline.placed import placed
 from pipeline.units import describe
 from stages.errors import Problem
 from stages.geometry.rigid import Rigid2
+from stages.model.caps import MOST_COPIES
 
 SCHEMA = "planish-layout/1"
 REPORTS = "planish-report/"
@@ -26,6 +27,8 @@ REPORTS = "planish-report/"
 SHEET_KEYS = ("stock", "index", "placements")
 PLACEMENT_KEYS = ("part", "copy", "x", "y", "angle", "mirrored", "fixed")
 MOTION_KEYS = ("x", "y", "angle")
+MOST_LAID = 20 * MOST_COPIES
+"""Values of a layout: each copy takes eight, and a report tells more of it."""
 MOST_MM = 1e9
 """No sheet is as large, and on none as far from the origin the last digit of a coordinate is less than 1e-7 mm."""
 
@@ -67,24 +70,19 @@ class LayoutFile:
 
     def problems(self, complaints: Sequence[Complaint]) -> list[Problem]:
         """Return complaints as problems, each with its line and column, in the order of the file."""
-        try:
-            found = places(self.text, is_json=is_json(self.file), wanted=[complaint.path for complaint in complaints])
-        except RecursionError:
-            found = {}
-        problems = []
-        for complaint in complaints:
-            place = nearest(found, complaint.path)
-            line, column = (None, None) if place is None else place.key if complaint.at == "key" else place.value
-            where = written(complaint.path)
-            problems.append(Problem(complaint.message, where, complaint.hint, str(self.file), line, column))
-        return sorted(problems, key=lambda problem: (problem.line or 0, problem.column or 0))
+        return placed(complaints, self.text, self.file)
 
 
 def read_layout(file: FilePath) -> LayoutFile:
     """Return a layout file; `BadInputError` if it cannot be read at all."""
-    content = read_bytes(file)
+    return layout_of(read_bytes(file), file)
+
+
+def layout_of(content: bytes, file: FilePath) -> LayoutFile:
+    """Return a layout file of these bytes; `BadInputError` if they cannot be read at all."""
     text = text_of(content, file)
     raw = parse(text, file)
+    refuse_huge(raw, file, MOST_LAID)
     reading = Reading()
     sheets, engine = _document(reading, raw)
     return LayoutFile(file, text, sheets, tuple(reading.complaints), engine, sha256(content).hexdigest())

@@ -1,4 +1,6 @@
-"""Layouts that are kept: `layout.json` of every nested job, and a job that is placed by such a file (`--layout`).
+"""Layouts that are kept: `layout.json` of every nested job, and a job that is placed by such a file.
+
+The job file names it (`nest.layout`), or `--layout` does, which comes first.
 
 A layout that holds every copy is final: nothing is searched, it is certified and written, and the same layout gives the
 same bytes.  A person may edit it.  Where some placements say `fixed = true`, these stay and all others are placed anew
@@ -41,10 +43,16 @@ class Stored:
 
 
 def with_layout(job: "Job", file: Path) -> "Job":
-    """Return the job placed by a layout file; `BadInputError` with everything that the file alone shows to be wrong."""
+    """Return the job placed by a layout file, which is one of its inputs then; `BadInputError`."""
     source = read_layout(file)
+    return replace(laid(job, source), inputs=(*job.inputs, (file.name, source.digest)))
+
+
+def laid(job: "Job", source: LayoutFile) -> "Job":
+    """Return the job placed by a layout; `BadInputError` with everything that its file alone shows to be wrong."""
     if not job.stock:
-        raise BadInputError(Problem("the job has no stock to lay parts on", hint="add [[stock]]", file=str(file)))
+        hint = "add [[stock]]"
+        raise BadInputError(Problem("the job has no stock to lay parts on", hint=hint, file=str(source.file)))
     quantities = {part.name: part.spec.quantity for part in job.parts}
     complaints = [
         *source.complaints,
@@ -53,8 +61,7 @@ def with_layout(job: "Job", file: Path) -> "Job":
     ]
     if complaints:
         raise BadInputError(*source.problems(complaints))
-    inputs = (*job.inputs, (file.name, source.digest))
-    return replace(job, layout=Stored(source, kept(source.sheets)), inputs=inputs)
+    return replace(job, layout=Stored(source, kept(source.sheets)))
 
 
 def kept(sheets: Sequence[SheetRows]) -> tuple[SheetRows, ...]:

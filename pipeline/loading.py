@@ -21,14 +21,24 @@ def load(job: Path, settings: Sequence[str], allow: Sequence[Path], say: Say, *,
     ready = job_of(read(job, settings, told, Given(allow=tuple(allow))))
     for note in () if quiet else ready.notes:
         say(f"note: {note}")
+    if not quiet:
+        _tell_layout(ready, say)
     return ready
 
 
 def laid(job: "Job", layout: Path, say: Say, *, quiet: bool) -> "Job":
     """Return the job placed by a layout file after telling how much of it stays."""
-    from pipeline.layouts import summary, with_layout
+    from pipeline.layouts import with_layout
 
     ready = with_layout(job, layout)
-    if ready.layout is not None and not quiet:
-        say(f"note: {summary(ready.layout)}")
+    if not quiet:
+        _tell_layout(ready, say)
     return ready
+
+
+def _tell_layout(job: "Job", say: Say) -> None:
+    """Say how much of a layout stays, if there is one."""
+    if job.layout is not None:
+        from pipeline.layouts import summary
+
+        say(f"note: {summary(job.layout)}")

@@ -3,10 +3,12 @@
 Where someone interrupted the search and waits, what takes seconds and can be made later is left out, and said.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 from pipeline.files import drawings, file_names
+from pipeline.inturn import Each, in_turn
 from pipeline.layouts import LAYOUT, layout_document
 from pipeline.remnants import REMNANTS, remnant_document
 from pipeline.report.document import Document, class_of, document, encoded
@@ -23,12 +25,12 @@ SLOW_FORMATS = frozenset({"png", "traveller"})
 """Left out after an interruption: they take 0.1 to 0.3 s a part, the rest together a second for dozens of parts."""
 
 
-def outputs(result: JobResult) -> tuple[Document, dict[str, bytes]]:
+def outputs(result: JobResult, each: Each = in_turn) -> tuple[Document, dict[str, bytes]]:
     """Return the report, and every file by its path below the output folder."""
     files = drawings(result)
     report = document(result, files)
     skipped = left_out(result)
-    drawn = {} if "png" in skipped else pictures(result)
+    drawn = {} if "png" in skipped else pictures(result, each)
     every = {**stored(result), **files, **side_files(result, files), **drawn, **views(result)}
     return report, with_formats(encoded(report), every, skipped)
 
@@ -66,24 +68,39 @@ def views(result: JobResult) -> dict[str, bytes]:
     return {VIEW: view_bytes(view_document(result, worst_v))}
 
 
-def pictures(result: JobResult) -> dict[str, bytes]:
+def pictures(result: JobResult, each: Each = in_turn) -> dict[str, bytes]:
     """Return a picture of every surface with its pattern and of every nested sheet, if the job asks for them."""
     if "png" not in result.job.formats:
         return {}
-    from pipeline.report.pictures import part_picture, sheet_picture
+    wanted = [*_part_pictures(result), *_sheet_pictures(result)]
+    drawn = each(lambda number: wanted[number][1](), len(wanted))
+    return {name: content for (name, _), content in zip(wanted, drawn, strict=True)}
+
+
+Drawn = Callable[[], bytes]
+"""Draws a picture when it is called."""
+
+
+def _part_pictures(result: JobResult) -> Iterator[tuple[str, Drawn]]:
+    """Yield the name of the picture of each surface, and who draws it."""
+    from pipeline.report.pictures import part_picture
 
     names = file_names(result.parts, result.job)
-    drawn: dict[str, bytes] = {}
     for run in result.parts:
         if run.surface is not None:
-            name = f"preview/{names.parts[run.part.name]}.png"
-            drawn[name] = part_picture(
-                run.surface, run.pattern, remarks(run), worst_v(run), class_of(run), flat=map_of(run)
-            )
+            told = remarks(run), worst_v(run), class_of(run)
+            draw = partial(part_picture, run.surface, run.pattern, *told, flat=map_of(run))
+            yield f"preview/{names.parts[run.part.name]}.png", draw
+
+
+def _sheet_pictures(result: JobResult) -> Iterator[tuple[str, Drawn]]:
+    """Yield the name of the picture of each nested sheet, and who draws it."""
+    from pipeline.report.pictures import sheet_picture
+
+    names = file_names(result.parts, result.job)
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
     for layout in result.nest.product.layouts if result.nest.product is not None else ():
-        drawn[names.picture(layout)] = sheet_picture(layout, patterns)
-    return drawn
+        yield names.picture(layout), partial(sheet_picture, layout, patterns)
 
 
 def remarks(run: PartRun) -> list[str]:

@@ -79,7 +79,7 @@ def _refuse_long_keys(text: str, file: FilePath) -> None:
         raise BadInputError(Problem(DEEP, hint=f"at most {DEEPEST} in each other", file=str(file), line=line))
 
 
-def refuse_huge(raw: object, file: FilePath) -> None:
+def refuse_huge(raw: object, file: FilePath, most: int = MOST_VALUES) -> None:
     """Raise `BadInputError` for tables that are nested too deeply or hold too much; nothing is looked at but that."""
     level, count, depth = [raw], 1, 0
     while level:
@@ -87,8 +87,8 @@ def refuse_huge(raw: object, file: FilePath) -> None:
         count, depth = count + len(level), depth + 1
         if depth > DEEPEST:
             raise BadInputError(Problem(DEEP, hint=f"at most {DEEPEST} in each other", file=str(file)))
-        if count > MOST_VALUES:
-            message = f"more than {MOST_VALUES} values"
+        if count > most:
+            message = f"more than {most} values"
             raise BadInputError(Problem(message, hint="divide it, or give curves in drawings", file=str(file)))
 
 

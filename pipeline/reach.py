@@ -12,6 +12,7 @@ import os
 import stat
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
 from pipeline.decode import ResolveError
@@ -51,28 +52,38 @@ def silent(_text: str) -> None:
     """Tell no one."""
 
 
+Seen = Callable[[Path, str], None]
+"""Is told of a file that is looked for, and again with the sha256 of its bytes once they are read."""
+
+
+def unnoticed(_file: Path, _sha256: str) -> None:
+    """Note nothing."""
+
+
 @dataclass(frozen=True, slots=True)
 class Reach:
     """Where the files that a job names may lie.
 
     folder: of the job file, where their names begin.  allow: what they may lie in besides; None: anywhere.
-    tell: is told what takes long.
+    tell: is told what takes long.  seen: is told of every file that is looked for, also of one that is not there.
     """
 
     folder: Path
     allow: tuple[Path, ...] | None = ()
     tell: Callable[[str], None] = silent
+    seen: Seen = unnoticed
 
     def content(self, name: str, largest: int, hint: str) -> bytes:
         """Return the bytes of a file, `largest` at most; `ResolveError` with the remedy where it cannot be had.
 
         hint: what to do about a file that is too large.
         """
+        self.seen(self.folder / name, "")
         try:
             handle = self._opened(name)
             if largest >= os.fstat(handle).st_size > TOLD:
                 self.tell(f"reading {name}, {os.fstat(handle).st_size // 10**6} MB")
-            return limited(handle, largest)
+            content = limited(handle, largest)
         except TooLargeError:
             raise ResolveError("file", f"{name} is larger than {largest // 10**6} MB", hint) from None
         except FileNotFoundError:
@@ -85,6 +96,8 @@ class Reach:
         except ValueError:
             hint = "letters that a file name may have"
             raise ResolveError("file", "the name of the file is none that a system takes", hint) from None
+        self.seen(self.folder / name, sha256(content).hexdigest())
+        return content
 
     def _opened(self, name: str) -> int:
         """Return the handle of a file that lies where it may."""

@@ -11,6 +11,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Generic, Literal, ParamSpec, TypeVar
 
 from pipeline.files import file_names
+from pipeline.inturn import Each, in_turn
 from pipeline.job import Job
 from stages.errors import NoSolutionError
 from stages.model.report import Finding, Outcome, Stage, StageReport
@@ -143,16 +144,29 @@ def one_after_the_other(runner: Runner, job: Job) -> Iterator[tuple[PartRun, ...
         yield run_set(runner, part, job)
 
 
-def spread(workers: int) -> Spread:
-    """Return the way to run the parts of a job in so many processes; in this one alone if that is enough."""
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How a job is run: its parts, and whatever else is one call for each of many things."""
+
+    parts: Spread = one_after_the_other
+    each: Each = in_turn
+
+
+ALONE = Way()
+"""All of it in this process."""
+
+
+def spread(workers: int) -> Way:
+    """Return the way to run a job in so many processes; in this one alone if that is enough."""
     if workers == 1:
-        return one_after_the_other
+        return ALONE
+    from pipeline.forked import each_by
     from pipeline.parallel import spread_over
 
-    return spread_over(workers)
+    return Way(spread_over(workers), each_by(workers))
 
 
-def run_job(job: Job, listener: Listener = silent, by: Spread = one_after_the_other) -> JobResult:
+def run_job(job: Job, listener: Listener = silent, by: Way = ALONE) -> JobResult:
     """Return what becomes of a job: each part constructed, verified, unrolled; all patterns nested and written.
 
     Nothing is nested unless every part passed; patterns of parts that passed are written flat in any case.
@@ -160,11 +174,11 @@ def run_job(job: Job, listener: Listener = silent, by: Spread = one_after_the_ot
     runner = Runner(listener)
     from pipeline.sewing import sewn_runs
 
-    runs = [run for blanks in by(runner, job) for run in blanks]
-    return finish(runner, job, sewn_runs(runner, runs, job.tolerances))
+    runs = [run for blanks in by.parts(runner, job) for run in blanks]
+    return finish(runner, job, sewn_runs(runner, runs, job.tolerances), by.each)
 
 
-def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...]) -> JobResult:
+def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...], each: Each = in_turn) -> JobResult:
     """Return what becomes of a job whose parts have got as far as they get: nested and written."""
     nest: Step[Nesting] = skipped("nest", job.name)
     try:
@@ -182,7 +196,7 @@ def finish(runner: Runner, job: Job, parts: tuple[PartRun, ...]) -> JobResult:
         names = file_names(parts, job)
         named = names.patterns(patterns)
         nesting = names.nesting(nest.product)
-        write = runner.step("write", job.name, written, named, nesting, names.machine, job.options)
+        write = runner.step("write", job.name, written, named, nesting, names.machine, job.options, each)
     return JobResult(job, parts, nest, write, runner.seconds)
 
 

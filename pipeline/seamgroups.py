@@ -83,8 +83,8 @@ def unmated(halves: Sequence[Half], names: Collection[str]) -> Iterator[tuple[st
     """Yield the seams whose mate has no pattern, with the name of their part; names: the seams that have one."""
     for half in halves:
         if half.seam.mate is not None and half.seam.mate not in names:
-            message = f"{half.name}: {half.seam.mate}, which it is sewn to, has no pattern; a file or part of several "
-            message += "blanks has no seams: give each blank as a part of its own"
+            message = f"{half.name}: {half.seam.mate}, which it is sewn to, has no pattern; the seams of a part of "
+            message += 'several blanks are on those: write "part.n.seam"; of a file, give each blank one of its own'
             yield half.part.name, Finding("mate-missing", message, fatal=True)
 
 

@@ -9,13 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from hashlib import sha256
 from io import BytesIO, TextIOWrapper
-from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from pipeline.decode import ResolveError, Several, suggestion
+from pipeline.parse import LARGEST_FILE
 from pipeline.paths import Path
 from pipeline.reach import Reach
-from pipeline.stocktables import LayersTable, StockTable
+from pipeline.stocktables import LayersTable, NestTable, StockTable
 from pipeline.units import UnreadableError, describe
 from stages.model.curves import CurveSpec, Table
 from stages.model.faces import FaceFile
@@ -40,20 +40,12 @@ Tell = Callable[[str], None]
 """Is told what takes long."""
 
 
-Seen = Callable[[FilePath], None]
-"""Is told of a file that is looked for."""
-
-
-def unnoticed(_file: FilePath) -> None:
-    """Note nothing."""
-
-
 @dataclass(slots=True)
 class Sources:
     """The drawings and meshes of one job file, each read once, and their names and sha256.
 
     meshes, faces: by the number of the part; touched: the meshes besides that its surface points at.
-    seen: is told of every file that is looked for, also of one that is not there.
+    layout: name and bytes of the file that says where copies lie, if there is one.
     """
 
     reach: Reach
@@ -64,18 +56,18 @@ class Sources:
     meshes: dict[int, "MeshSource"] = field(default_factory=dict)
     faces: dict[int, "CadSource"] = field(default_factory=dict)
     touched: dict[int, "dict[MeshNormals, MeshSource]"] = field(default_factory=dict)
-    seen: Seen = unnoticed
+    layout: tuple[str, bytes] | None = None
 
     def resolve(self, table: Table, path: Path) -> Table | Several:
         """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
-        if isinstance(table, MeshFile | MeshNormals | FaceFile | StockTable | CurveSpec) and table.file is not None:
-            self.seen(self.reach.folder / table.file)
         if isinstance(table, MeshFile):
             self.meshes[_part(path)] = self._mesh(table)
         if isinstance(table, MeshNormals):
             self.touched.setdefault(_part(path), {})[table] = self._mesh(table)
         if isinstance(table, FaceFile):
             self._read_faces(table, path)
+        if isinstance(table, NestTable) and table.layout is not None:
+            self.layout = table.layout, self._laid(table.layout)
         if isinstance(table, StockTable) and table.file is not None:
             return Several(_sound(self._stock(table, table.file)))
         if not isinstance(table, CurveSpec) or table.file is None:
@@ -124,7 +116,7 @@ class Sources:
             if row.layers is not None:
                 raise ResolveError("layers", f"{name} has no layers", "leave them out")
             blank = stockfiles.plain_row(row, stockfiles.stem_of(name))
-            return rows_of_json(row, blank, self._content(name), self.unit)
+            return rows_of_json(row, blank, self._content(name, LARGEST_DRAWING, "is this stock?"), self.unit)
         if row.entry is not None:
             raise ResolveError("entry", f"the pieces of {name} have no names", "leave it out: all are taken")
         layers = row.layers or LayersTable()
@@ -139,9 +131,16 @@ class Sources:
             raise ResolveError("file", error.message, error.hint) from None
         return stockfiles.rows_of_drawing(row, curves)
 
-    def _content(self, name: str) -> bytes:
+    def _laid(self, name: str) -> bytes:
+        """Return the bytes of the file of a layout."""
+        try:
+            return self._content(name, LARGEST_FILE, "is this a layout?")
+        except ResolveError as error:
+            raise ResolveError("layout", error.message, error.hint) from None
+
+    def _content(self, name: str, largest: int, hint: str) -> bytes:
         """Return the bytes of a file, their sha256 noted."""
-        content = self.reach.content(name, LARGEST_DRAWING, "is this stock?")
+        content = self.reach.content(name, largest, hint)
         said = name, sha256(content).hexdigest()
         if said not in self.digests:
             self.digests.append(said)

@@ -166,6 +166,8 @@ class NestTable(Table, frozen=True, kw_only=True):
     common_line: straight edges of neighbours may be cut together.
     offcut_min: what is left over counts from this shorter side on.
     offcut_credit: what it is worth, as a share of what the same area of the sheet costs.
+    layout: a file that says where copies lie, seen from the job file: `layout.json` or `report.json` of a job that was
+        nested, edited or not, as `--layout` takes it.
     """
 
     gap: Length = field(default_factory=Length)
@@ -177,6 +179,7 @@ class NestTable(Table, frozen=True, kw_only=True):
     common_line: bool = DEFAULTS.common_line
     offcut_min: Length = field(default_factory=lambda: Length(repr(DEFAULTS.offcut_min_mm)))
     offcut_credit: Number = field(default_factory=Number)
+    layout: Annotated[str, Meta(min_length=1, max_length=500)] | None = None
 
     def troubles(self) -> Iterator[Trouble]:
         """Yield negative lengths, no time, and an empty list of angles."""

@@ -138,13 +138,8 @@ def replacement(out: Path, keep: Iterable[Path] = ()) -> Iterator[Draft]:
 def _drafted(target: Path) -> Iterator[Draft]:
     """Give a new folder beside a target; what is left of it in the end goes."""
     name = folders.unlikely(target.name, ".part")
-    with folders.opened(target.parent) as parent:
-        os.mkdir(name, folders.NEW_FOLDER, dir_fd=parent)
-        try:
-            with folders.opened(name, parent) as handle:
-                yield Draft(target, name, parent, handle)
-        finally:
-            folders.remove(name, parent)
+    with folders.opened(target.parent) as parent, folders.grown(name, parent) as handle:
+        yield Draft(target, name, parent, handle)
 
 
 def _unwritable(out: Path, error: OSError) -> BadInputError:
@@ -165,13 +160,7 @@ def _swap(draft: Draft, out: Path) -> None:
     name, old, parent = draft.target.name, folders.unlikely(draft.target.name, ".old"), draft.parent
     try:
         folders.sync(draft.handle)
-        there = _moved(name, old, parent)
-        try:
-            os.rename(draft.name, name, src_dir_fd=parent, dst_dir_fd=parent)
-        except OSError:
-            if there:
-                os.rename(old, name, src_dir_fd=parent, dst_dir_fd=parent)
-            raise
+        folders.put(draft.name, parent, name, parent, old)
     except OSError as error:
         raise _unwritable(out, error) from None
     folders.remove(old, parent)
@@ -179,15 +168,6 @@ def _swap(draft: Draft, out: Path) -> None:
         folders.remove_link(name, parent)
         message = "another program changed the output folder while it was written"
         raise BadInputError(Problem(message, hint="run again, or choose another with -o", file=str(out)))
-
-
-def _moved(name: str, aside: str, parent: int) -> bool:
-    """Move what goes by that name aside; return whether there was anything."""
-    try:
-        os.rename(name, aside, src_dir_fd=parent, dst_dir_fd=parent)
-    except FileNotFoundError:
-        return False
-    return True
 
 
 def write_files(folder: Draft | Path, files: Mapping[str, bytes]) -> None:

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, field
 
-from pipeline.dxftables import DxfTable, alone_troubles, machine_of
+from pipeline.dxftables import DxfTable, machine_of
 from pipeline.helps import help_troubles, helps_of
 from pipeline.jobfile import Given, ReportTable, read_as
 from pipeline.jobrules import repeated
@@ -40,13 +40,11 @@ class StockFile(Table, frozen=True, kw_only=True):
     report: ReportTable = ReportTable()
 
     def troubles(self) -> Iterator[Trouble]:
-        """Yield names that occur twice, and common lines of no known width."""
+        """Yield names that occur twice, and helps that do not go together."""
         yield from repeated("stock", "id", [stock.name for stock in self.stock])
-        if self.nest.common_line and self.process.kerf is None and self.process.type is None:
-            hint = "give process.kerf or process.type: neighbours lie one kerf apart"
-            yield Trouble("nest.common_line", "the width of the cut is not known", hint)
-        yield from alone_troubles(self.dxf, common_line=self.nest.common_line)
         yield from help_troubles(self.process, self.dxf, self.nest, self.stock, None)
+        if self.nest.layout is not None:
+            yield Trouble("nest.layout", "a layout is that of one job", "leave it out: all parts are placed anew")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,15 +1,13 @@
-"""CAD files for tests, written by OpenCASCADE and by Rhino's own library; shapes in mm unless said otherwise."""
+"""CAD files for tests, written by OpenCASCADE; shapes in mm unless said otherwise."""
 
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from itertools import pairwise
 from math import pi
 from pathlib import Path
 
 import numpy as np
-import rhino3dm
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeEdge,
@@ -19,7 +17,6 @@ from OCP.BRepBuilderAPI import (
 )
 from OCP.BRepFill import BRepFill
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
-from OCP.BRepGProp import BRepGProp
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
     BRepPrimAPI_MakeCone,
@@ -31,13 +28,10 @@ from OCP.BRepPrimAPI import (
 )
 from OCP.collections import Array1_double, Array1_gp_Pnt, Array1_int
 from OCP.Geom import Geom_BSplineCurve
-from OCP.GeomAbs import GeomAbs_SurfaceType
-from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Elips, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
-from OCP.GProp import GProp_GProps
-from OCP.IGESControl import IGESControl_Reader, IGESControl_Writer
+from OCP.IGESControl import IGESControl_Writer
 from OCP.Interface import Interface_Static
-from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -83,33 +77,6 @@ def iges(file: Path, shape: TopoDS_Shape, unit: str = "MM") -> Path:
         writer.ComputeModel()
         writer.Write(str(file))
     return file
-
-
-def area(shape: TopoDS_Shape, eps: float = 1e-12) -> float:
-    """Return the area that OpenCASCADE measures to a relative error."""
-    found = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, found, eps)
-    return float(found.Mass())
-
-
-def fine_area(face: TopoDS_Face) -> float:
-    """Return the area that OpenCASCADE measures; of a spline face, which fills its surface, over 16 pieces per knot.
-
-    Over whole pieces its quadrature stops at 3e-9 whatever is asked of it.
-    """
-    surface = BRepAdaptor_Surface(face)
-    if surface.GetType() in (GeomAbs_SurfaceType.GeomAbs_Plane, *QUADRICS):
-        return area(face)
-    fine = GeomConvert.SurfaceToBSplineSurface_s(surface.GeomSurface())
-    for knots, insert in ((fine.UKnots(), fine.InsertUKnot), (fine.VKnots(), fine.InsertVKnot)):
-        rows = [knots.Value(i) for i in range(knots.Lower(), knots.Upper() + 1)]
-        for a, b in pairwise(rows):
-            for share in np.arange(1, 16) / 16:
-                insert(float(a + share * (b - a)), 1, 1e-12, False)
-    return area(BRepBuilderAPI_MakeFace(fine, 1e-7).Face())
-
-
-QUADRICS = GeomAbs_SurfaceType.GeomAbs_Cylinder, GeomAbs_SurfaceType.GeomAbs_Cone
 
 
 def faces(shape: TopoDS_Shape) -> list[TopoDS_Face]:
@@ -293,53 +260,6 @@ def torus(major: float = 10.0, minor: float = 3.0) -> TopoDS_Shape:
     return BRepPrimAPI_MakeTorus(major, minor).Shape()
 
 
-# Rhino's library
-
-
-def rhino(file: Path, *things: object, unit: str = "Millimeters", name: str = "") -> Path:
-    """Write a 3DM file of breps, extrusions and surfaces."""
-    model = rhino3dm.File3dm()
-    model.Settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, unit)
-    attributes = rhino3dm.ObjectAttributes()
-    attributes.Name = name
-    for thing in things:
-        model.Objects.Add(thing, attributes)
-    assert model.Write(str(file), 8)
-    return file
-
-
-def rhino_pipe(radius: float = 20.0, height: float = 50.0) -> rhino3dm.Brep:
-    """A closed cylinder about z."""
-    circle = rhino3dm.Circle(rhino3dm.Point3d(0, 0, 0), radius)
-    return rhino3dm.Brep.CreateFromCylinder(rhino3dm.Cylinder(circle, height), True, True)
-
-
-def rhino_cone(radius: float = 30.0, height: float = 40.0) -> rhino3dm.Brep:
-    """A cone from its apex at the origin to an open circle at `height`."""
-    origin = rhino3dm.Point3d(0, 0, 0)
-    side = rhino3dm.LineCurve(origin, rhino3dm.Point3d(radius, 0, height))
-    axis = rhino3dm.Line(origin, rhino3dm.Point3d(0, 0, 1))
-    return rhino3dm.Brep.CreateFromRevSurface(rhino3dm.RevSurface.Create(side, axis, 0.0, 2 * pi), False, False)
-
-
-def rhino_spline(points: Sequence[Row], degree: int = 3) -> rhino3dm.Curve:
-    """A clamped B-spline with even knots."""
-    return rhino3dm.Curve.CreateControlPointCurve([rhino3dm.Point3d(*map(float, row)) for row in points], degree)
-
-
-def rhino_ruled(one: Sequence[Row], other: Sequence[Row], degree: int = 3) -> rhino3dm.NurbsSurface:
-    """The ruled surface between two splines."""
-    return rhino3dm.NurbsSurface.CreateRuledSurface(rhino_spline(one, degree), rhino_spline(other, degree))
-
-
-def rhino_extrusion(points: Sequence[Row], height: float) -> rhino3dm.Extrusion:
-    """The planar polyline through points in z = 0, extruded along z."""
-    line = rhino3dm.Polyline(len(points))
-    for row in points:
-        line.Add(*(float(x) for x in row))
-    return rhino3dm.Extrusion.Create(line.ToPolylineCurve(), height, False)
-
-
 # Reading
 
 
@@ -349,15 +269,6 @@ def read(file: Path) -> CadBody:
         if file.suffix == ".3dm":
             return cad_3dm.faces(str(file))
         return cad_step.faces(str(file), "step" if file.suffix == ".step" else "iges")
-
-
-def reread(file: Path) -> TopoDS_Shape:
-    """Return what OpenCASCADE itself makes of a file."""
-    reader = STEPControl_Reader() if file.suffix == ".step" else IGESControl_Reader()
-    with silent():
-        reader.ReadFile(str(file))
-        reader.TransferRoots()
-    return reader.OneShape()
 
 
 def part(*faces: CadFace, name: str = "part") -> Part:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-DPI = 254
+DPI, COARSE_DPI = 254, 101.6
 PIXELS_PER_MM = 10
 MM_PER_POINT = 25.4 / 72.0
 
@@ -32,6 +32,24 @@ def grey(file: Path, page: int) -> np.ndarray:
     assert head is not None
     width, height = int(head[1]), int(head[2])
     return np.frombuffer(made[head.end() :], np.uint8).reshape(height, width)[::-1].astype(np.int64)
+
+
+def colours(file: Path, page: int) -> np.ndarray:
+    """Return a page in red, green and blue, 0 to 255, the upper row first, four pixels a mm."""
+    command = ["pdftoppm", "-r", str(COARSE_DPI), "-f", str(page), "-l", str(page), str(file)]
+    made = subprocess.run(command, check=True, capture_output=True, timeout=60).stdout
+    head = re.match(rb"P6\s+(\d+)\s+(\d+)\s+255\s", made)
+    assert head is not None
+    width, height = int(head[1]), int(head[2])
+    return np.frombuffer(made[head.end() :], np.uint8).reshape(height, width, 3).astype(np.int64)
+
+
+def count(file: Path) -> int:
+    """Return how many pages there are."""
+    made = subprocess.run(["pdfinfo", str(file)], check=True, capture_output=True, timeout=60).stdout.decode()
+    found = re.search(r"^Pages:\s+(\d+)$", made, re.MULTILINE)
+    assert found is not None
+    return int(found[1])
 
 
 def words(file: Path, page: int) -> list[Word]:

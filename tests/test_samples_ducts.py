@@ -98,6 +98,21 @@ def test_the_elbows_gores_fit_together_without_a_finding_on_their_seams(ducts: d
         assert not [finding["code"] for entry in stages for finding in entry["findings"]]
 
 
+@pytest.mark.parametrize(("name", "pitch"), [("transition", 60.0), ("reducer", 60.0), ("tap", 25.0)])
+def test_the_lap_of_a_fitting_is_one_line_with_rivets_hole_on_hole(
+    ducts: dict[str, dict], name: str, pitch: float
+) -> None:
+    detail, edges = stage(ducts[name], "unroll")["detail"], ducts[name]["flat"]["edges"]
+    rows = {row["name"]: row for row in detail["stitches"]}
+    start, end = rows["stitch-start"], rows["stitch-end"]
+    assert start["count"] == end["count"] >= 2
+    assert_relative([start["pitch"], edges["start"]], [end["pitch"], edges["end"]], bound=LAST_DIGITS, why="one line")
+    assert abs(start["pitch"] - pitch) < pitch / start["count"], "an even division next to what is asked for"
+    widened = ducts[name]["flat"]["cut"]["area"] - ducts[name]["flat"]["area"]
+    both = 2 * 10.0 * edges["start"]
+    assert 0.9 * both < widened < 1.1 * both, "10 mm on both sides, but for the corners"
+
+
 def test_every_fitting_unrolls_without_change_of_length(ducts: dict[str, dict]) -> None:
     for part in ducts.values():
         assert figure(part, "unroll", "length_error")["value"] < LAST_DIGITS, part["name"]

@@ -8,7 +8,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from pipeline.job import job_of
+from pipeline.job import Job, job_of
 from pipeline.jobfile import read
 from pipeline.run import PartRun, Runner, run_set
 from pipeline.sewing import sewn_runs
@@ -21,11 +21,17 @@ SEWN = SAMPLES / "bag" / "sewn.toml"
 
 
 @cache
+def sewn() -> Job:
+    """Return the job."""
+    return job_of(read(SEWN, []))
+
+
+@cache
 def runs() -> dict[str, PartRun]:
     """Return the parts as they are cut; nothing is nested, which takes longer than all else."""
-    job, runner = job_of(read(SEWN, [])), Runner()
-    every = [run for part in job.parts for run in run_set(runner, part, job)]
-    return {run.part.name: run for run in sewn_runs(runner, every, job.tolerances)}
+    runner = Runner()
+    every = [run for part in sewn().parts for run in run_set(runner, part, sewn())]
+    return {run.part.name: run for run in sewn_runs(runner, every, sewn().tolerances)}
 
 
 def table(part: str, name: str) -> dict[str, dict]:
@@ -120,3 +126,20 @@ def test_nothing_of_the_bag_is_covered_twice() -> None:
     for run in runs().values():
         assert run.pattern is not None
         assert arcpath.area(run.pattern.outer.path) > 0.0
+
+
+def test_the_skins_are_hides_with_defects_zones_and_a_backbone_along_x() -> None:
+    stock = sewn().stock
+    assert [sheet.kind for sheet in stock] == ["hide", "hide"]
+    for sheet in stock:
+        assert sheet.outline is not None and sheet.defects and sheet.grain_deg == 0.0
+        assert {zone.quality for zone in sheet.zones} == {4}
+        sound = arcpath.area(sheet.outline) - sum(arcpath.area(zone.outline) for zone in sheet.zones)
+        assert 0.4e6 < sound < 0.6e6, "a calf skin, mm2"
+
+
+def test_what_shows_lies_on_sound_leather_and_the_straps_along_the_backbone() -> None:
+    parts = {part.spec.name: part.spec for part in sewn().parts}
+    assert {name for name, spec in parts.items() if spec.quality == 4} == {"gusset", "base"}
+    assert {name for name, spec in parts.items() if spec.quality == "best"} == {"body", "flap", "strap"}
+    assert float(parts["strap"].stretch_axis or 0) == 90.0

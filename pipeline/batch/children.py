@@ -75,10 +75,16 @@ def begin(running: c_int) -> None:
 def harmless() -> None:
     """Make this process one that dies with its server, leads a group of its own, dumps no core and prints nothing."""
     from pipeline.batch import warm
+
+    tame(os.getppid() if os.getpid() == warm.SERVER else warm.SERVER)  # the former: loaded here, late
+
+
+def tame(parent: int) -> None:
+    """Make this process one that dies with its parent, leads a group of its own, dumps no core and prints nothing."""
     from pipeline.orphans import die_with_parent
 
     os.setpgid(0, 0)
-    die_with_parent(os.getppid() if os.getpid() == warm.SERVER else warm.SERVER)  # the former: loaded here, late
+    die_with_parent(parent)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     nowhere = os.open(os.devnull, os.O_RDWR)

@@ -129,18 +129,18 @@ def _of(file: Path, names: tuple[str, ...]) -> Entries:
 
 def job_file(file: Path, named: str) -> Entry:
     """Return the place of a job that is a file by itself; of one too large, as far as it is looked at."""
-    own = read_some(file)
+    own = read_some(file) or b""
     return Entry(named, 0, len(own), 0, content(own))
 
 
-def read_some(file: Path | str) -> bytes:
-    """Return the bytes of a file as far as a job file may be long, and one more; nothing of what is no plain file."""
+def read_some(file: Path | str) -> bytes | None:
+    """Return the bytes of a file as far as a job file may be long, and one more; None where it is no plain file."""
     try:
         handle = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except (OSError, ValueError):
-        return b""
+        return None
     with os.fdopen(handle, "rb") as stream:
-        return stream.read(LARGEST_FILE + 1) if stat.S_ISREG(os.fstat(handle).st_mode) else b""
+        return stream.read(LARGEST_FILE + 1) if stat.S_ISREG(os.fstat(handle).st_mode) else None
 
 
 def lines(file: Path, named: str) -> Iterator[Entry]:

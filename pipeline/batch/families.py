@@ -59,7 +59,7 @@ def table_of(file: Path, template: Path) -> Table:
     problems = [Problem(message, hint=hint, file=str(file), line=1) for message, hint in _head_troubles(columns)]
     if problems:
         raise BadInputError(*problems)
-    return Table(file, template, columns, read_some(template), head)
+    return Table(file, template, columns, read_some(template) or b"", head)
 
 
 def _head_troubles(columns: Sequence[str]) -> Iterator[tuple[str, str]]:

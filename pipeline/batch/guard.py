@@ -15,12 +15,11 @@ from pathlib import Path
 from time import perf_counter
 
 from pipeline.batch import draft
-from pipeline.batch.identity import of_file
+from pipeline.batch.named import Named
 from pipeline.batch.work import Record, Status, Work
 from pipeline.complaints import complaints
 from pipeline.job import job_of
 from pipeline.jobfile import Given, ReadJob, read
-from pipeline.meshsources import SAMPLE
 from pipeline.outputs import outputs
 from pipeline.run import JobResult, run_job
 from stages.errors import BadInputError
@@ -31,17 +30,18 @@ LONGEST_CAUSE = 500
 
 Files = Mapping[str, bytes]
 NO_FILES: Files = {}
-Named = dict[Path, str]
-"""The files that a job named, with their SHA-256 where they were read."""
 
 
 def run(work: Work) -> Record:
     """Run a job and return what became of it; raises nothing."""
     start = perf_counter()
-    named: Named = {}
+    named = Named()
     try:
-        record = _kept(work, *_ended(work, named))
-        return replace(record, seconds=perf_counter() - start, inputs=_inputs(work, named))
+        record, files = _ended(work, named)
+        inputs = named.inputs()
+        if named.changed:
+            record, files = _moved(named.changed), NO_FILES
+        return replace(_kept(work, record, files), seconds=perf_counter() - start, inputs=inputs)
     except BaseException as error:
         return replace(_record("internal", _said(error)), seconds=perf_counter() - start)
 
@@ -74,6 +74,11 @@ def _ended(work: Work, named: Named) -> tuple[Record, Files]:
         return _record("internal", _said(error)), {TRACEBACK: told.encode("utf-8", "replace")}
 
 
+def _moved(name: str) -> Record:
+    """Return the record of a job that no one can say what it was made from: it is tried again, but not for ever."""
+    return _record("crashed", f"{name} has changed while the job read it")
+
+
 def _record(status: Status, said: str) -> Record:
     return Record(status, one_line(said), 0.0, (), "", own=True)
 
@@ -92,23 +97,9 @@ def _said(error: BaseException) -> str:
 def _read(work: Work, named: Named) -> ReadJob:
     """Return the job as read; note which files it names."""
     file = Path(work.file)
-
-    def seen(path: Path) -> None:
-        named.setdefault(path, "")
-
-    given = Given(work.text, work.line, tuple(Path(folder) for folder in work.allow), seen)
+    given = Given(work.text, work.line, tuple(Path(folder) for folder in work.allow), named.seen)
     job = read(file, work.settings, given=given)
-    named.update({file.parent / name: sha256 for name, sha256 in job.inputs[1:]})
     return job if work.line is None else replace(job, file=file.with_name(f"{work.job}.json"))
-
-
-def _inputs(work: Work, named: Named) -> tuple[tuple[str, str], ...]:
-    """Return the files that a job named; of one that it could not read, what it holds now."""
-    with_planish = str(Path(work.file).parent / SAMPLE)
-    own = {str(path): sha256 for path, sha256 in named.items()}
-    return tuple(
-        (path, sha256 or of_file(path)) for path, sha256 in sorted(own.items()) if not path.startswith(with_planish)
-    )
 
 
 def cause(result: JobResult) -> str:

@@ -21,6 +21,8 @@ from pipeline.batch.schema import PUBLISHING, STATE_OF, WAITING
 from pipeline.batch.work import Limits, Record
 from stages.errors import BadInputError, Problem
 
+BESIDE = ("-wal", "-shm")
+"""What SQLite calls the files that it keeps beside a journal [1]_."""
 CACHE_KB = 16_384
 BUSY_MS = 10_000
 """How long a reader may keep a checkpoint waiting."""
@@ -134,7 +136,8 @@ class Journal:
     def _ending(self, each: Finished) -> tuple[object, ...]:
         record = each.record
         digest = bytes.fromhex(record.digest)
-        return STATE_OF[record.status], each.draft, record.cause, record.seconds, digest, self.run, each.place.row
+        ended = STATE_OF[record.status], each.draft, record.cause, record.seconds, digest
+        return *ended, self.run, each.place.content, each.place.row
 
     def settle(self) -> None:
         """What was intended is done."""
@@ -210,8 +213,9 @@ def reading(out: Path) -> sqlite3.Connection:
 
 
 def _connected(uri: str, out: Path) -> sqlite3.Connection:
-    if (out / JOURNAL).is_symlink():
-        raise BadInputError(Problem("the journal is a link", hint="remove it", file=str(out / JOURNAL)))
+    for file in (out / f"{JOURNAL}{ending}" for ending in ("", *BESIDE)):
+        if file.is_symlink():
+            raise BadInputError(Problem("the journal is a link", hint="remove it", file=str(file)))
     try:
         base = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=BUSY_MS / 1000)
         base.execute("PRAGMA user_version")

@@ -1,5 +1,6 @@
 """One runner for each output folder: a lock that the system takes back when its holder ends, however it ends."""
 
+import errno
 import fcntl
 import os
 import socket
@@ -9,13 +10,16 @@ from contextlib import contextmanager
 from stages.errors import BadInputError, Problem
 
 LOCK = ".lock"
+FLAGS = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+FOREIGN = frozenset({errno.ELOOP, errno.EISDIR})
+"""What opening says of a link, and of a folder."""
 LONGEST_HOLDER = 200
 
 
 @contextmanager
 def held(folder: int, path: str) -> Iterator[None]:
     """Hold the lock of an opened folder for the block; `BadInputError` says who has it already."""
-    handle = os.open(LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666, dir_fd=folder)
+    handle = _opened(folder, path)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -28,3 +32,14 @@ def held(folder: int, path: str) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
+
+
+def _opened(folder: int, path: str) -> int:
+    """Return the handle of the file of the lock, made where it is missing; `BadInputError` for a link or a folder."""
+    try:
+        return os.open(LOCK, FLAGS, 0o666, dir_fd=folder)
+    except OSError as error:
+        if error.errno not in FOREIGN:
+            raise
+        message = f"a link or a folder where the lock {LOCK} belongs"
+        raise BadInputError(Problem(message, hint="remove it", file=path)) from None

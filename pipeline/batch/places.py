@@ -1,7 +1,7 @@
 """The place of a job -> the work that is handed to who runs it: its bytes are read again, and must be the same."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -18,8 +18,15 @@ class ChangedError(Exception):
     """A file that many jobs come from is not what it was when they were taken in; says which."""
 
 
-class BadRowError(Exception):
-    """A row of a table that sets nothing; says why."""
+class UnfitError(Exception):
+    """A job that no one need run: a row of a table that sets nothing, a file that cannot be read; says why.
+
+    place: its place as found.
+    """
+
+    def __init__(self, why: str, place: Place) -> None:
+        super().__init__(why)
+        self.place = place
 
 
 @dataclass(slots=True)
@@ -35,8 +42,11 @@ class Places:
     stream: BinaryIO | None = None
     tables: dict[Source, families.Table] = field(default_factory=dict)
 
-    def work(self, place: Place, draft: str) -> Work:
-        """Return the work of a job; `ChangedError`, `BadRowError`."""
+    def work(self, place: Place, draft: str) -> tuple[Place, Work]:
+        """Return a place as found, and the work of the job there; `ChangedError`, `UnfitError`.
+
+        A job file may be another by now than when it was taken in: it is what is found that is run and recorded.
+        """
         if place.source.kind == "table":
             return self._row(place, draft)
         if place.source.kind == "lines":
@@ -44,10 +54,13 @@ class Places:
             if content(own) != place.content:
                 raise ChangedError(place.source.path)
             return self._work(place, draft, own, line=place.line)
-        own = read_some(place.source.path)
-        return self._work(place, draft, own)
+        found = read_some(place.source.path)
+        place = replace(place, content=content(found or b""))
+        if found is None:
+            raise UnfitError(f"{place.source.path}: cannot be read: there is no plain file", place)
+        return self._work(place, draft, found)
 
-    def _row(self, place: Place, draft: str) -> Work:
+    def _row(self, place: Place, draft: str) -> tuple[Place, Work]:
         source = place.source
         if source not in self.tables:
             self.tables = {source: families.table_of(Path(source.path), Path(source.template))}
@@ -58,16 +71,17 @@ class Places:
         try:
             settings = families.settings(table.columns, own)
         except ValueError as error:
-            raise BadRowError(f"{source.path}: row {place.line}: {error}") from None
+            raise UnfitError(f"{source.path}: row {place.line}: {error}", place) from None
         return self._work(place, draft, table.own, settings=settings)
 
     def _work(
         self, place: Place, draft: str, own: bytes, *, line: int | None = None, settings: tuple[str, ...] = ()
-    ) -> Work:
-        """Return the work; a file that is not there or too large is left to who runs it to complain about."""
-        text = own if 0 < len(own) <= LARGEST_FILE else None
+    ) -> tuple[Place, Work]:
+        """Return the work, with the bytes that the job is made from; `UnfitError` for too many."""
         file = place.source.template or place.source.path
-        return Work(place.name, file, line, text, settings, tuple(self.allow), draft, self.limits)
+        if len(own) > LARGEST_FILE:
+            raise UnfitError(f"{file}: larger than {LARGEST_FILE // 10**6} MB", place)
+        return place, Work(place.name, file, line, own, settings, tuple(self.allow), draft, self.limits)
 
     def _read(self, place: Place) -> bytes:
         """Return the bytes at a place of a file that many jobs come from."""

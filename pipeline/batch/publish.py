@@ -4,29 +4,26 @@
 
 A power cut at any point leaves each job either as it was or published; `settle` tells which, by the digest that the
 journal holds.  Only names in two opened folders are used, so that a link put into the output tree is replaced, and
-nothing is ever read or written through it.
+nothing is ever read or written through it (`folders`).
 """
 
 import ctypes
-import errno
 import os
-import shutil
-import stat
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from pipeline import folders
 from pipeline.batch import digest
+from pipeline.batch.draft import made
 from pipeline.batch.journal import Finished, Journal
 from pipeline.batch.stale import is_folder
+from pipeline.batch.stopped import FULL
+from stages.errors import BadInputError, Problem
 
 DRAFTS = ".drafts"
 FAILURE = "failure.json"
-NEW_FOLDER = 0o777
-TAKEN = frozenset({errno.EEXIST, errno.ENOTEMPTY, errno.ENOTDIR})
-"""What a rename says where something lies that it does not replace."""
-FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +45,32 @@ class Tree:
 
 
 def opened(path: Path) -> Tree:
-    """Return an output folder with its drafts, made where they are not there."""
-    path.mkdir(parents=True, exist_ok=True)
-    out = os.open(path, FOLDER)
-    with suppress(FileExistsError):
-        os.mkdir(DRAFTS, NEW_FOLDER, dir_fd=out)
-    return Tree(path, out, os.open(DRAFTS, FOLDER, dir_fd=out))
+    """Return an output folder with its drafts, made where they are not there; `BadInputError` where that cannot be."""
+    with refusing(path):
+        path.mkdir(parents=True, exist_ok=True)
+        out = os.open(path, folders.FOLDER)
+    try:
+        with refusing(path / DRAFTS):
+            with suppress(FileExistsError):
+                os.mkdir(DRAFTS, folders.NEW_FOLDER, dir_fd=out)
+            return Tree(path, out, os.open(DRAFTS, folders.FOLDER, dir_fd=out))
+    except BaseException:
+        os.close(out)
+        raise
+
+
+@contextmanager
+def refusing(path: Path) -> Iterator[None]:
+    """Raise `BadInputError` where the block cannot have what it writes to; a full disk is another matter."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno in FULL:
+            raise
+        foreign = path.is_symlink() or (path.exists() and not path.is_dir())
+        what = "a link or a file where a folder of the batch belongs" if foreign else error.strerror or str(error)
+        hint = "remove it, or choose another folder with -o" if foreign else "choose another folder with -o"
+        raise BadInputError(Problem(what, hint=hint, file=str(path))) from None
 
 
 def synced(folder: int) -> None:
@@ -70,24 +87,16 @@ def publish(tree: Tree, journal: Journal, group: Sequence[Finished]) -> None:
     """Put the drafts of some finished jobs in their places, in this order and no other."""
     synced(tree.out)
     journal.intend(group)
-    for each in group:
-        put(tree, each.draft, each.place.name)
+    replaced = [each.draft for each in group if put(tree, each.draft, each.place.name)]
     os.fsync(tree.out)
     journal.settle()
-    for each in group:
-        removed(old(each.draft), tree.drafts)
+    for name in replaced:
+        folders.remove(old(name), tree.drafts)
 
 
-def put(tree: Tree, draft: str, name: str) -> None:
-    """Rename a draft to its place; what lies there is moved among the drafts first, a link as the link it is."""
-    try:
-        os.rename(draft, name, src_dir_fd=tree.drafts, dst_dir_fd=tree.out)
-    except OSError as error:
-        if error.errno not in TAKEN:
-            raise
-        removed(old(draft), tree.drafts)
-        os.rename(name, old(draft), src_dir_fd=tree.out, dst_dir_fd=tree.drafts)
-        os.rename(draft, name, src_dir_fd=tree.drafts, dst_dir_fd=tree.out)
+def put(tree: Tree, draft: str, name: str) -> bool:
+    """Rename a draft to its place, and return whether something lay there, which is now among the drafts."""
+    return folders.put(draft, tree.drafts, name, tree.out, old(draft))
 
 
 def old(draft: str) -> str:
@@ -103,7 +112,7 @@ def settle(tree: Tree, journal: Journal) -> None:
     journal.settle()
     with os.scandir(tree.drafts) as left:
         for entry in left:
-            removed(entry.name, tree.drafts)
+            folders.remove(entry.name, tree.drafts)
 
 
 def _stands(tree: Tree, name: str, draft: str, wanted: str) -> bool:
@@ -124,27 +133,6 @@ def _digest(path: Path, name: str, inside: int) -> str | None:
         return None
 
 
-def removed(name: str, inside: int) -> None:
-    """Remove a name from an opened folder with all that is below it; no link is followed."""
-    try:
-        mode = os.stat(name, dir_fd=inside, follow_symlinks=False).st_mode
-    except FileNotFoundError:
-        return
-    if stat.S_ISDIR(mode):
-        shutil.rmtree(name, ignore_errors=True, dir_fd=inside)
-    else:
-        os.unlink(name, dir_fd=inside)
-
-
 def own_draft(tree: Tree, name: str, content: bytes) -> str:
     """Make a draft that holds a failure alone, and return its digest."""
-    removed(name, tree.drafts)
-    os.mkdir(name, NEW_FOLDER, dir_fd=tree.drafts)
-    folder = os.open(name, FOLDER, dir_fd=tree.drafts)
-    try:
-        handle = os.open(FAILURE, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666, dir_fd=folder)
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-    finally:
-        os.close(folder)
-    return digest.folder(tree.path / DRAFTS / name)
+    return made(name, tree.drafts, {FAILURE: content})

@@ -45,11 +45,18 @@ def run(call: Run, by: Program, work: Work) -> Record:
         return _unrun(f"another planish than the runner's: {', '.join(changes)}")
     if is_daemon():
         return _unrun("it is a daemon, which may have no children")
-    slot = getattr(_here, "slot", None)
-    if slot is None:
-        slot = _here.slot = Slot(call)
-    ran: Ran = slot.run((work,))
+    ran: Ran = _slot(call).run((work,))
     return ran.records[0]
+
+
+def _slot(call: Run) -> Slot:
+    """Return the place of this thread, with a new child where the one that is there does something else."""
+    slot: Slot | None = getattr(_here, "slot", None)
+    if slot is None or slot.call is not call:
+        if slot is not None:
+            slot.stop()
+        slot = _here.slot = Slot(call)
+    return slot
 
 
 def _unrun(why: str) -> Record:

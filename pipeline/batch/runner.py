@@ -16,11 +16,12 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from pipeline import folders
 from pipeline.batch import publish
 from pipeline.batch.entries import Entries, Entry, Source
 from pipeline.batch.failures import failure
 from pipeline.batch.journal import Finished, Journal, Place
-from pipeline.batch.places import BadRowError, ChangedError, Places
+from pipeline.batch.places import ChangedError, Places, UnfitError
 from pipeline.batch.publish import Tree
 from pipeline.batch.schema import CONDEMNED, STATE_OF
 from pipeline.batch.stale import is_folder
@@ -144,9 +145,9 @@ class Loop:
             self.drafts += 1
             draft = f"{self.journal.run}-{self.drafts}"
             try:
-                work = self.places.work(place, self.tree.draft(draft))
-            except BadRowError as error:
-                self._end(place, Record("bad-input", str(error), 0.0, (), "", own=True), draft)
+                place, work = self.places.work(place, self.tree.draft(draft))
+            except UnfitError as error:
+                self._end(error.place, Record("bad-input", str(error), 0.0, (), "", own=True), draft)
                 continue
             future = self.executor.submit(work)
             self.flying[draft] = place, future
@@ -185,7 +186,7 @@ class Loop:
         if STATE_OF[record.status] in CONDEMNED and place.attempts + 1 < OWN_TRIES:
             self.journal.failed(place)
             self.again.append(replace(place, attempts=place.attempts + 1))
-            publish.removed(draft, self.tree.drafts)
+            folders.remove(draft, self.tree.drafts)
             self.tell(self, Event(place.name, record, place.attempts + 1, final=False))
             return
         self._end(place, record, draft)
@@ -193,7 +194,7 @@ class Loop:
     def _stray(self, place: Place, record: Record, draft: str) -> None:
         """Have a job run again whose failure was not its own; `StoppedError` where that is all that happens."""
         self.strays += 1
-        publish.removed(draft, self.tree.drafts)
+        folders.remove(draft, self.tree.drafts)
         if says_full(record.cause):
             raise StoppedError(f"{self.tree.path}: {record.cause}", SPACE)
         if self.strays >= MOST_STRAYS:

@@ -56,7 +56,8 @@ WHERE state = {WAITING} AND job.id > ? AND seen = ? ORDER BY job.id LIMIT ?
 """
 
 INTEND = f"""
-UPDATE job SET state = {PUBLISHING}, ends = ?, draft = ?, cause = ?, seconds = ?, digest = ?, run = ? WHERE id = ?
+UPDATE job SET state = {PUBLISHING}, ends = ?, draft = ?, cause = ?, seconds = ?, digest = ?, run = ?, content = ?
+WHERE id = ?
 """
 
 SETTLE = f"UPDATE job SET state = ends, draft = NULL WHERE state = {PUBLISHING}"

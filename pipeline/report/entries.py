@@ -1,7 +1,8 @@
 """What the formats of numbers read of a report, typed: metrics, findings, stages, parts and the nest.
 
 Numbers stay as JSON has them, integers and floats apart.  Figures of flat patterns, surfaces, sheets and costs have
-many keys that come and go; they stay mappings, of which every number is told by its path.
+many keys that come and go; they stay mappings, of which every number is told by its path.  What the shop needs of them
+by name is in `shopentries`; what both read of jobs, parts and sheets is their heads.
 """
 
 from collections.abc import Mapping
@@ -43,22 +44,27 @@ class StageEntry(Struct, frozen=True):
     stage: str = ""
 
 
-class PartEntry(Struct, frozen=True):
-    """One part; `verdict` is null in what was nested from drawings alone."""
+class PartHead(Struct, frozen=True, kw_only=True):
+    """What every reader needs of a part; `verdict` is null in what was nested from drawings alone."""
 
     name: str
     quantity: int
     verdict: str | None = field(name="class")
-    flat: Figures | None
-    surface: Figures | None
     mass_kg: Number | None
     cut_length_mm: Number | None
     pierces: int | None
+
+
+class PartEntry(PartHead, frozen=True, kw_only=True):
+    """One part."""
+
+    flat: Figures | None
+    surface: Figures | None
     stages: tuple[StageEntry, ...]
 
 
-class SheetEntry(Struct, frozen=True):
-    """One nested sheet."""
+class SheetHead(Struct, frozen=True, kw_only=True):
+    """What every reader needs of a nested sheet."""
 
     stock: str
     index: int
@@ -67,6 +73,11 @@ class SheetEntry(Struct, frozen=True):
     cut_length_mm: Number | None
     pierces: int | None
     used_length_mm: Number | None
+
+
+class SheetEntry(SheetHead, frozen=True, kw_only=True):
+    """One nested sheet."""
+
     offcut: Figures | None
     cost: Number | None
 
@@ -98,8 +109,8 @@ class WriteEntry(StageEntry, frozen=True, kw_only=True):
     files: tuple[FileEntry, ...]
 
 
-class JobEntry(Struct, frozen=True):
-    """The job."""
+class JobHead(Struct, frozen=True, kw_only=True):
+    """What every reader needs of a job; digest: null where several were nested together."""
 
     name: str
     digest: str | None = None
@@ -110,7 +121,7 @@ class ReportEntry(Struct, frozen=True):
 
     schema: str
     status: str
-    job: JobEntry
+    job: JobHead
     parts: tuple[PartEntry, ...]
     nest: NestEntry
     write: WriteEntry

@@ -31,7 +31,9 @@ MOST_CORNERS = 12
 EDGES = (("start", 0, 1), ("c1", 1, 2), ("end", 2, 3), ("c0", 3, 0))
 """The edges of a surface by the corners that they join."""
 
-DIAGONAL = "diagonal"
+EDGE, DIAGONAL = "edge", "diagonal"
+"""What spans are that are no edge of a surface."""
+
 SAME_MM = 1e-6
 ON_OUTLINE = 4.0
 """In chord tolerances: how near a corner must be to the outline to be one of it."""
@@ -117,4 +119,4 @@ def _sides(outline: ArcPath, at: Sequence[int]) -> Iterator[Edge]:
         following = (i + 1) % len(at)
         last = at[following] if following else at[0] + len(long)
         pieces = np.arange(first, last) % len(long)
-        yield "edge", float(long[pieces].sum()), i, following
+        yield EDGE, float(long[pieces].sum()), i, following

@@ -13,7 +13,7 @@ import msgspec
 
 from pipeline.report.nestentries import sheet_of
 from pipeline.report.render import Made
-from pipeline.report.traveller_entries import PartEntry, ReportEntry, SheetEntry, SideEntry
+from pipeline.report.shopentries import PartEntry, ReportEntry, SheetEntry, SideEntry
 from pipeline.report.traveller_formed import formed_picture
 from pipeline.report.traveller_inked import Inked, inked, label_room_mm
 from pipeline.report.traveller_pages import A4_MM, Leaf, Subject, leaves, numbered, true_leaf, width_of
@@ -40,7 +40,7 @@ def traveller_pdf(made: Made) -> bytes:
     patterns = {name: inked(one, number) for number, (name, one) in enumerate(flat)}
     pages: list[Page] = []
     for number, part in enumerate(read.parts, 1):
-        if part.reached is not None:  # else nested from its drawing: its own job has its pages
+        if part.verdict is not None:  # else nested from its drawing: its own job has its pages
             pages += _part_pages(read, part, number, patterns.get(part.name), views.get(part.name))
     sheets = read.nest.sheets if read.status == MADE else ()
     for number, sheet in enumerate(sheets, 1):
@@ -75,7 +75,7 @@ def _said(report: ReportEntry, part: PartEntry) -> str:
 
 def _prefix(report: ReportEntry) -> str:
     """Return what the ids of a job begin with: of its digest, or its name where it has none."""
-    return report.job.digest[:DIGITS] or safe_name(report.job.name)[:DIGITS]
+    return (report.job.digest or "")[:DIGITS] or safe_name(report.job.name)[:DIGITS]
 
 
 def _job_words(report: ReportEntry) -> list[str]:

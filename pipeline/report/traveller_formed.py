@@ -13,7 +13,7 @@ from math import ceil
 
 import numpy as np
 
-from pipeline.report.traveller_entries import FormedEntry
+from pipeline.report.shopentries import FormedEntry
 from pipeline.report.traveller_ink import QUIET, Pen, said
 from pipeline.report.traveller_numbers import millimetres
 from pipeline.report.viewcells import COLUMNS

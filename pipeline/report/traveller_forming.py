@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from pipeline.report.traveller_entries import Bend, DetailEntry, PartEntry
+from pipeline.report.shopentries import DetailEntry, PartEntry
 from pipeline.report.traveller_flow import Column, Row, Table
 from pipeline.report.traveller_numbers import DASH, degrees, millimetres, square
-from pipeline.sidelines import Radii, RollRow
+from pipeline.sidelines import BendRow, Radii, RollRow
 
 NUMBER_MM = 12.0
 
@@ -43,7 +43,7 @@ def _bend_table(detail: DetailEntry, width_mm: float) -> Table:
     return Table("Bend", columns, rows, note)
 
 
-def _bend_cells(number: int, bend: Bend) -> tuple[str, ...]:
+def _bend_cells(number: int, bend: BendRow) -> tuple[str, ...]:
     radius = "fold" if bend.fold else _pair(bend.radius_mm)
     pitch = DASH if bend.pitch_mm is None else _pair(bend.pitch_mm)
     return (

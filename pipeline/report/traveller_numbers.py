@@ -6,6 +6,7 @@ FINE_MM = 100.0
 DASH = "\N{EN DASH}"
 GRAMS = 1000.0
 SQUARE_M = 1e6
+SQUARE_MM = "mm\N{SUPERSCRIPT TWO}"
 
 
 def millimetres(value: float | None, unit: str = "") -> str:
@@ -32,18 +33,14 @@ def kilograms(value: float | None) -> str:
 
 def square(value: float) -> str:
     """Return an area in mm2, or m2 where it is large."""
-    return (
-        f"{value / SQUARE_M:.4f} m\N{SUPERSCRIPT TWO}"
-        if value >= SQUARE_M / 10.0
-        else f"{value:.1f} mm\N{SUPERSCRIPT TWO}"
-    )
+    return f"{value / SQUARE_M:.4f} m\N{SUPERSCRIPT TWO}" if value >= SQUARE_M / 10.0 else f"{value:.1f} {SQUARE_MM}"
 
 
 def plain(value: float | bool | None, unit: str = "") -> str:
     """Return the value of a metric to four digits."""
     if value is None or isinstance(value, bool):
         return {None: "not defined", True: "yes", False: "no"}[value]
-    return f"{value:.4g} {unit}".rstrip()
+    return f"{value:.4g} {unit.replace('mm2', SQUARE_MM)}".rstrip()
 
 
 def counted(count: int | None, thing: str) -> str:

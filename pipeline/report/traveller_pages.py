@@ -1,12 +1,14 @@
 """Pages of the traveller: what stands on them, and their foot with check line, id and number.
 
-The line of 100 mm is on every page: a print on which it is not 100 mm long was scaled.
+The line of 100 mm is on every page: a print on which it is not 100 mm long was scaled.  The id is there in letters and
+as a code (`traveller_code`).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from pipeline.report.traveller_entries import TapeEntry
+from pipeline.report.shopentries import TapeEntry
+from pipeline.report.traveller_code import QUIET_MM, Code, code_of
 from pipeline.report.traveller_flow import Block, line_blocks, stacked
 from pipeline.report.traveller_ink import HAIR, INK, LINE_MM, QUIET, THIN_MM, Pen, moved, rule, said, stroked
 from pipeline.report.traveller_inked import Inked
@@ -16,6 +18,12 @@ from stages.write.pdfobjects import Page
 
 MARGIN_MM, TOP_MM, FOOT_MM = 12.0, 11.0, 20.0
 CHECK_MM, CHECK_Y_MM, TICK_MM = 100.0, 9.0, 1.6
+RULE_MM = FOOT_MM - 2.5
+"""The line above the foot of a page."""
+
+CLEAR_MM = 0.2
+"""Of a code from that line, more than it must be."""
+
 FOOT_PT = 7.0
 A4_MM = 210.0, 297.0
 """ISO 216."""
@@ -112,24 +120,27 @@ def _true_leaf(
 def numbered(found: Sequence[Leaf], subject: Subject) -> Iterator[Page]:
     """Yield the pages of a subject with their feet."""
     for number, leaf in enumerate(found, 1):
-        foot = _foot(leaf, subject, f"page {number} of {len(found)}")
+        foot = _foot(leaf, subject, code_of(subject.id), f"page {number} of {len(found)}")
         yield Page(leaf.width_mm, leaf.height_mm, leaf.content + foot)
 
 
-def _foot(leaf: Leaf, subject: Subject, page: str) -> str:
-    """Return the foot of a page: check line on the left, id and number on the right."""
+def _foot(leaf: Leaf, subject: Subject, code: Code, page: str) -> str:
+    """Return the foot of a page: check line on the left, id, number and the code of the id on the right."""
     right, y = leaf.width_mm - MARGIN_MM, CHECK_Y_MM
+    edge = right - code.side_mm
+    beside = edge - QUIET_MM - CLEAR_MM
     missing = lost(subject.said)
     told = f"{REPLACED}{', '.join(f'U+{ord(letter):04X}' for letter in missing)}" if missing else ""
     made = [
         stroked(HAIR, THIN_MM),
-        rule(MARGIN_MM, FOOT_MM - 2.5, right, FOOT_MM - 2.5),
+        rule(MARGIN_MM, RULE_MM, right, RULE_MM),
         stroked(INK, LINE_MM),
         rule(MARGIN_MM, y, MARGIN_MM + CHECK_MM, y),
         *(rule(end, y - TICK_MM, end, y + TICK_MM) for end in (MARGIN_MM, MARGIN_MM + CHECK_MM)),
         said(MARGIN_MM + CHECK_MM / 2.0, y + 1.2, "100 mm on paper", Pen(FOOT_PT, align="middle")),
-        said(right, y + 2.2, subject.id, Pen(FOOT_PT + 2.0, BOLD, align="right")),
-        said(right, y - 1.4, page, Pen(FOOT_PT, colour=QUIET, align="right")),
+        said(beside, y + 2.2, subject.id, Pen(FOOT_PT + 2.0, BOLD, align="right")),
+        said(beside, y - 1.4, page, Pen(FOOT_PT, colour=QUIET, align="right")),
+        moved(code.content, edge, RULE_MM - CLEAR_MM - QUIET_MM - code.side_mm),
     ]
     for i, line in enumerate(wrapped(told, CHECK_MM - 10.0, FOOT_PT - 1.5)[:2]):
         made.append(said(MARGIN_MM, y - 3.6 - 2.3 * i, line, Pen(FOOT_PT - 1.5, colour=QUIET)))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from pipeline.report.entries import MetricEntry
-from pipeline.report.traveller_entries import FlatEntry, JobEntry, PartEntry, TapeEntry
+from pipeline.report.shopentries import FlatEntry, JobEntry, PartEntry, TapeEntry
 from pipeline.report.traveller_flow import (
     BODY_PT,
     LEADING,
@@ -78,7 +78,7 @@ class Shown:
 def part_blocks(shown: Shown, job: JobEntry, width_mm: float) -> Iterator[Block]:
     """Yield what stands on the pages of a part."""
     part = shown.part
-    yield from head_blocks(part.name, _about(part, job), width_mm, chip(part.reached or ""))
+    yield from head_blocks(part.name, _about(part, job), width_mm, chip(part.verdict or ""))
     yield _facts_block(shown, job, width_mm)
     if shown.inked is not None and part.flat is not None:
         yield from _pattern_blocks(shown, shown.inked, part.flat, width_mm)
@@ -142,7 +142,7 @@ def _facts(part: PartEntry, job: JobEntry) -> Iterator[tuple[str, str]]:
         yield "Cut", f"{millimetres(part.cut_length_mm, 'mm')}, {counted(part.pierces, 'pierce')}"
     tolerance, process = job.tolerance, job.process
     if tolerance is not None:
-        yield "Class", f"{part.reached}; accepted up to {tolerance.accept}"
+        yield "Class", f"{part.verdict}; accepted up to {tolerance.accept}"
         yield "Tolerances", f"contour {tolerance.chord_mm:g} mm, joins {tolerance.join_mm:g} mm"
     if process is not None:
         kerf = "not stated" if process.kerf_mm is None else f"{process.kerf_mm:g} mm"

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 
-from pipeline.report.traveller_entries import BlankEntry, TapeEntry
+from pipeline.report.shopentries import BlankEntry, TapeEntry
 from pipeline.report.traveller_ink import (
     BENDING,
     HAIR,

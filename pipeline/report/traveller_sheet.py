@@ -10,7 +10,7 @@ from math import hypot
 
 import numpy as np
 
-from pipeline.report.traveller_entries import JobEntry, NestEntry, PlacementEntry, ReportEntry, SheetEntry, SideEntry
+from pipeline.report.shopentries import JobEntry, NestEntry, PlacementEntry, ReportEntry, SheetEntry, SideEntry
 from pipeline.report.traveller_flow import Block, Column, Row, Table, space, table_blocks, title_block
 from pipeline.report.traveller_ink import (
     BAD,

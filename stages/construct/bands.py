@@ -7,11 +7,10 @@ from math import isinf
 
 import numpy as np
 
-from stages.geometry.arrays import Values
+from stages.geometry.arrays import Values, diagonal
 from stages.geometry.curves import Curve
 from stages.geometry.envelope import Widest, speed
 from stages.geometry.extremum import maximum
-from stages.geometry.ruled import box
 from stages.model.report import Finding, Metric, Where
 
 PLACES = 33
@@ -25,7 +24,7 @@ def positions(curves: Sequence[Curve]) -> np.ndarray:
 
 def size_along(curves: Sequence[Curve]) -> float:
     """Return the diagonal of the bounding box of the curves, mm (sampled)."""
-    return box(positions(curves))
+    return diagonal(positions(curves))
 
 
 @dataclass(frozen=True, slots=True)

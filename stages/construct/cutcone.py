@@ -14,7 +14,7 @@ Refused, with the ruling that is worst: a plane that some ruling does not meet o
 on both sides of the apex, and ends that cross.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -22,7 +22,7 @@ from itertools import pairwise
 import numpy as np
 
 from stages.construct.apex import apex_findings
-from stages.construct.quintic import ZERO, Vector, combine, scaling, vector
+from stages.construct.quintic import ZERO, Vector, combine, inner, scaling, vector
 from stages.geometry.arrays import EPS, Values, dot, norm
 from stages.geometry.curves import (
     Bezier,
@@ -31,9 +31,10 @@ from stages.geometry.curves import (
     RationalBezier,
     affine,
     homogeneous,
+    raised,
     rational,
 )
-from stages.geometry.extremum import maximum
+from stages.geometry.extremum import minimum
 from stages.geometry.ruled import RuledPatch, between
 from stages.geometry.stepped import Share, Stepped, constant
 from stages.model.part import Cone, Plane
@@ -112,7 +113,7 @@ def _shares(spec: Cone, rulings: Rulings) -> tuple[Share, Share]:
 def _share(rulings: Rulings, plane: Plane | None, uncut: Fraction) -> Share:
     if plane is None:
         return constant(uncut)
-    n, height = vector(plane.normal), _inner(vector(plane.normal), vector(plane.point))
+    n, height = vector(plane.normal), inner(vector(plane.normal), vector(plane.point))
     above = affine(rulings.r, (combine((-1, n)), ZERO, ZERO), (height, Fraction(0), Fraction(0)))
     return Share(above, affine(rulings.d, (n, ZERO, ZERO), ZERO))
 
@@ -125,13 +126,13 @@ def _exact_end(rulings: Rulings, plane: Plane | None, uncut: Curve) -> Bezier | 
     if plane is None:
         return uncut if isinstance(uncut, Bezier | RationalBezier) else None
     apex, n = rulings.apex[1], vector(plane.normal)
-    k = _inner(n, combine((1, vector(plane.point)), (-1, apex)))
+    k = inner(n, combine((1, vector(plane.point)), (-1, apex)))
     arms = [combine((1, point[:3]), (-point[3], apex)) for point in homogeneous(r)]
-    weights = [_inner(n, arm) for arm in arms]
+    weights = [inner(n, arm) for arm in arms]
     sign = 1 if sum(weights) > 0 else -1
     rows = [(*combine((sign * w, apex), (sign * k, arm)), sign * w) for arm, w in zip(arms, weights, strict=True)]
-    raised = _with_positive_weights(rows)
-    return None if raised is None else rational(raised)
+    positive = _with_positive_weights(rows)
+    return None if positive is None else rational(positive)
 
 
 MOST_DEGREE = 24
@@ -144,22 +145,8 @@ def _with_positive_weights(rows: Sequence[tuple[Fraction, ...]]) -> HomogeneousP
     while len(rows) <= MOST_DEGREE + 1:
         if all(row[3] > 0 for row in rows):
             return tuple((row[0], row[1], row[2], row[3]) for row in rows)
-        rows = _raised(rows)
+        rows = raised(rows)
     return None
-
-
-def _raised(rows: Sequence[tuple[Fraction, ...]]) -> list[tuple[Fraction, ...]]:
-    """Return homogeneous control points of the same curve, one degree higher."""
-    n = len(rows)
-    inner = [
-        tuple(Fraction(i, n) * a + Fraction(n - i, n) * b for a, b in zip(rows[i - 1], rows[i], strict=True))
-        for i in range(1, n)
-    ]
-    return [rows[0], *inner, rows[-1]]
-
-
-def _inner(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
 
 
 # What is refused
@@ -191,7 +178,7 @@ def _missed(rulings: Rulings, plane: Plane, key: str) -> Finding | None:
         return np.divide(dot(d, normal), length, out=np.zeros_like(length), where=length > 0.0)
 
     sign = 1.0 if float(sine(EVENLY).sum()) >= 0.0 else -1.0
-    worst, v = _least(lambda places: sign * sine(places))
+    worst, v = minimum(lambda places: sign * sine(places))
     if worst > PARALLEL:
         return None
     angle = float(np.degrees(np.arcsin(max(-worst, 0.0))))
@@ -226,7 +213,7 @@ def _crossing(rulings: Rulings, start: Share, end: Share) -> Finding | None:
         return _lengths(rulings, start, end, v)
 
     sign = 1.0 if float(length(EVENLY).sum()) >= 0.0 else -1.0
-    least, v = _least(lambda places: sign * length(places))
+    least, v = minimum(lambda places: sign * length(places))
     size = float(np.abs(length(EVENLY)).max())
     if least >= -ROUNDING * size:
         return None
@@ -261,9 +248,3 @@ def _reversals(spec: Cone, every: Sequence[Rulings]) -> tuple[Finding, ...]:
             )
             return (Finding("planes-cross", message, True, {"piece": i, "v": float(i), "length_mm": 0.0}),)
     return ()
-
-
-def _least(function: Callable[[Values], Values]) -> tuple[float, float]:
-    """Return the least value and its place: sampled."""
-    value, v = maximum(lambda places: -function(places))
-    return -value, v

@@ -8,7 +8,7 @@ one; elsewhere a tree, each face unrolled by itself and laid against its neighbo
 from collections.abc import Sequence
 
 from stages.construct.faces_hinges import Meeting, meetings
-from stages.construct.faces_joined import STRAIGHT_RULING, Blank, along, strips_of
+from stages.construct.faces_joined import STRAIGHT_RULING, Blank, along, middle_of, not_joined, strips_of
 from stages.construct.faces_tree import Apart, Grown, grown, in_order, reversed_meeting
 from stages.geometry.arrays import Vector3, norm, unit
 from stages.model.cadface import CadBody, CadFace, CadJoint
@@ -65,10 +65,7 @@ def _branched(
 
 
 def _told(faces: Sequence[CadFace], apart: Apart) -> Finding:
-    """Say why two faces that go over into each other are not joined."""
-    a, b = sorted(faces[i].index for i in (apart.meeting.one, apart.meeting.other))
-    message = f"faces {a} and {b} go over into each other {_where(apart)} and are not joined: {apart.why}"
-    return Finding("not-joined", message, False, {"face": a, "other": b})
+    return not_joined(faces, (apart.meeting.one, apart.meeting.other), apart.meeting.ends, apart.why)
 
 
 def _edges_told(faces: Sequence[CadFace], group: tuple[int, ...], edges: Sequence[Apart]) -> tuple[Finding, ...]:
@@ -77,8 +74,8 @@ def _edges_told(faces: Sequence[CadFace], group: tuple[int, ...], edges: Sequenc
     if not here:
         return ()
     named = [
-        f"faces {faces[one.meeting.one].index} and {faces[one.meeting.other].index} {_where(one)}: {one.why}"
-        for one in here[:MOST_NAMED]
+        f"faces {faces[at.one].index} and {faces[at.other].index} {middle_of(at.ends)}: {why}"
+        for at, why in ((one.meeting, one.why) for one in here[:MOST_NAMED])
     ]
     more = f"; and at {len(here) - MOST_NAMED} more edges" if len(here) > MOST_NAMED else ""
     first = here[0].meeting
@@ -88,8 +85,3 @@ def _edges_told(faces: Sequence[CadFace], group: tuple[int, ...], edges: Sequenc
 
 MOST_NAMED = 6
 """Edges in a message."""
-
-
-def _where(apart: Apart) -> str:
-    x, y, z = apart.meeting.ends.mean(axis=0)
-    return f"at ({x:.6g}, {y:.6g}, {z:.6g}) mm"

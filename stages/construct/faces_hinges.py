@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.construct.faces_based import Based, based, normals, places
-from stages.construct.faces_joined import MEETS, coinciding, straight_edges
+from stages.construct.faces_joined import coinciding, straight_edges
 from stages.construct.faces_ruled import ruled_form
 from stages.construct.faces_strip import NoSeamError
-from stages.construct.faces_trim import OpenLoopError
+from stages.construct.faces_trim import MEETS, OpenLoopError
 from stages.construct.joins import SMOOTH_RAD
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, ArrayValue, dot, norm
@@ -28,6 +28,7 @@ ALONG = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 SAME_RULING = 1e-9
 """Of a patch in v: an edge that keeps to this runs along a ruling."""
 FOLDED_BACK = np.pi / 2.0
+"""Normals that enclose more look away from each other: one of both faces is inside out."""
 
 Edge = tuple[int, int]
 """Of a face: the loop, 0 the outer one, and the curve in it."""

@@ -13,16 +13,15 @@ import numpy as np
 
 from stages.construct.faces_ruled import Rails, parallel, ruled_form
 from stages.construct.faces_strip import NoSeamError, sampled, strip_of
+from stages.construct.faces_trim import MEETS
 from stages.construct.joins import SMOOTH_RAD
-from stages.geometry.arrays import Matrix, Points3, Vector3, cross3, norm, unit
+from stages.geometry.arrays import Matrix, Points3, Vector3, cross3, diagonal, norm, unit
 from stages.geometry.pullback import nearest
 from stages.geometry.ruled import RuledPatch
 from stages.geometry.strip import Strip, jet
 from stages.model.cadface import CadBody, CadFace, CadPlane, CadSweep
 from stages.model.report import Finding
 
-MEETS = 1e-6
-"""Share of the size of both faces by which two edges may differ that are one."""
 STRAIGHT = 1e-9
 """Share of its length by which an edge may leave the line between its ends, and rad by which it may leave a ruling."""
 SENSE = np.array([1.0, 0.6180339887498949, 0.3819660112501051])
@@ -79,17 +78,27 @@ def strips_of(body: CadBody) -> tuple[Blank, ...]:
         while run[-1] in after:
             direction = after[run[-1]].direction
             run.append(after[run[-1]].after)
-        notes = tuple(_told(body.faces, joint, why) for joint, why in apart if {joint.before, joint.after} & {*run})
+        notes = tuple(
+            not_joined(body.faces, (joint.before, joint.after), joint.ends, why)
+            for joint, why in apart
+            if {joint.before, joint.after} & {*run}
+        )
         whole = None if direction is None else (float(direction[0]), float(direction[1]), float(direction[2]))
         found.append((min(run), Blank(CadBody(tuple(body.faces[k] for k in run), whole), notes)))
     return tuple(blank for _, blank in sorted(found, key=lambda pair: pair[0]))
 
 
-def _told(faces: Sequence[CadFace], joint: Joint, why: str) -> Finding:
-    a, b = sorted((faces[joint.before].index, faces[joint.after].index))
-    x, y, z = joint.ends.mean(axis=0)
-    message = f"faces {a} and {b} go over into each other at ({x:.6g}, {y:.6g}, {z:.6g}) mm and are not joined: {why}"
+def not_joined(faces: Sequence[CadFace], pair: tuple[int, int], ends: Points3, why: str) -> Finding:
+    """Say why two faces that go over into each other are not joined, at the middle of their edge."""
+    a, b = sorted(faces[i].index for i in pair)
+    message = f"faces {a} and {b} go over into each other {middle_of(ends)} and are not joined: {why}"
     return Finding("not-joined", message, False, {"face": a, "other": b})
+
+
+def middle_of(ends: Points3) -> str:
+    """Return the place of an edge by its ends, for messages."""
+    x, y, z = ends.mean(axis=0)
+    return f"at ({x:.6g}, {y:.6g}, {z:.6g}) mm"
 
 
 def chosen(joints: Sequence[Joint]) -> tuple[list[Joint], list[tuple[Joint, str]]]:
@@ -192,7 +201,7 @@ def coinciding(rows: Sequence[tuple[int, Matrix]], faces: Sequence[CadFace]) -> 
 
 
 def _size(face: CadFace) -> float:
-    return float(norm(np.ptp(np.concatenate(sampled(face)), axis=0)))
+    return diagonal(np.concatenate(sampled(face)))
 
 
 def _apart(one: Matrix, other: Matrix) -> float:

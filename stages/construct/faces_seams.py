@@ -33,7 +33,7 @@ APART = 1e-3
 """rad between the seam and a hole, at least: what is nearer looks like meeting it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Turned:
     """A rim and the angles along each of its curves, without jumps, at `SAMPLES` places, shape (curves, SAMPLES)."""
 
@@ -46,7 +46,7 @@ class Turned:
         return bool(abs(self.angles[-1, -1] - self.angles[0, 0]) > np.pi)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Compass:
     """What tells places round a closed surface apart: a whole turn of `along` is once round.
 
@@ -179,6 +179,7 @@ def _refined(curve: Curve, compass: Compass, angle: float, t: float) -> Fraction
 
 
 HALVINGS = 52
+"""What is left of an interval is the spacing of the doubles."""
 
 
 def _sewn(begun: Sequence[Run], rims: Sequence[Turned], apex: Vector3 | None) -> Rim:

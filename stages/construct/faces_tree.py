@@ -16,6 +16,7 @@ import numpy as np
 
 from stages.construct.faces_based import Based
 from stages.construct.faces_hinges import ENDS, Edge, Meeting, curve_of
+from stages.construct.faces_trim import MEETS
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Points2, norm
 from stages.geometry.development import develop
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
 INSIDE = 1e-3
 """Share of the size by which the polygons are shrunk: some ten times what their chords leave out of a half circle."""
 SAMPLES = 33
-MEETS = 1e-6
-"""Share of the size by which both sides of a closed ring may miss each other: what CAD programs leave of edges."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,8 @@ STEPS = 64
 STRAIGHT = 1e-9
 """Of u, or of a patch in v: what runs along a ruling or an edge of the strip to within rounding of both."""
 MEETS = 1e-6
-"""Share of the size by which the edges of a loop may miss each other: ten times what CAD programs leave."""
+"""Share of the size by which edges that are one, or that make a loop or a ring, may miss each other: ten times what CAD
+programs leave."""
 
 
 class OpenLoopError(Exception):

@@ -22,7 +22,19 @@ import numpy as np
 from stages.construct.faces_strip import arcs
 from stages.construct.joins import join_metrics, join_rows, joins_of
 from stages.construct.quintic import combine, scaling, vector
-from stages.geometry.arrays import Array, ArrayValue, Numbers, Points2, Points3, Values, Vector2, Vector3, cross2, norm
+from stages.geometry.arrays import (
+    Array,
+    ArrayValue,
+    Numbers,
+    Points2,
+    Points3,
+    Values,
+    Vector2,
+    Vector3,
+    cross2,
+    diagonal,
+    norm,
+)
 from stages.geometry.curves import Circular, Curve, affine, bezier, exactly
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshprofile import allowed_mm, profiled
@@ -76,7 +88,7 @@ def bent_sheet(part: Part, mesh: Mesh, loops: Sequence[Numbers], tol: Tolerances
     ends = _middles(laid, loops[0]) if filled else _reach(laid, outline)
     chart, patches, breaks = strip(laid, ends)
     trim = None if filled else Trim(pulled(chart, outline), tuple(pulled(chart, hole) for hole in holes))
-    size = float(norm(np.ptp(mesh.vertices, axis=0)))
+    size = diagonal(mesh.vertices)
     joins = joins_of(patches)
     surface = RuledSurface(part, patches, size, whole_spans(len(patches)), trim=trim, tangencies=breaks)
     detail: dict[str, object] = {"recognised": _told(laid), "joins": join_rows(joins, size, tol)}

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Numbers, norm
+from stages.geometry.arrays import Numbers, diagonal
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshchart import interpolated
 from stages.geometry.meshenvelope import Developed, common, patch_of
@@ -53,7 +53,7 @@ def developable(part: Part, mesh: Mesh, loops: Sequence[Numbers], tol: Tolerance
     """Return the developable of a mesh that is one oriented disc, maybe with holes; None where it is not known."""
     if len(mesh.vertices) < FEWEST or len(mesh.faces) > MOST_TRIANGLES:
         return None
-    size = float(norm(np.ptp(mesh.vertices, axis=0)))
+    size = diagonal(mesh.vertices)
     enough = max(rounding(mesh.vertices), ENOUGH * size)
     family = enveloped(mesh, fitted(mesh, stars(mesh, edges_of(mesh))), enough_mm=enough)
     if family is None:
@@ -105,3 +105,4 @@ def _inside(outer: Sequence[PlaneCurve]) -> bool:
 
 
 SAMPLES = 65
+"""Of each edge: it may leave the patch by `BESIDE` between the vertices, which 64 stretches do not miss."""

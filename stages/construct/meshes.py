@@ -13,10 +13,10 @@ import numpy as np
 
 from stages.construct.features import Placement, placed, placement
 from stages.construct.meshfaults import (
-    crossing_findings,
     place,
     repair_findings,
     repair_metrics,
+    self_crossing,
     surface_findings,
     text,
 )
@@ -27,7 +27,7 @@ from stages.construct.meshsolid import thin_solid
 from stages.construct.plain import PlaneFrame
 from stages.construct.plates import placed_in_plane
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Numbers, Points3, norm
+from stages.geometry.arrays import Numbers, Points3, diagonal, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcut import Opened, area, edge_lengths, ends_of, opened, turnings
 from stages.geometry.meshrepair import Repair, repaired
@@ -91,7 +91,7 @@ def blanks(part: Part) -> tuple[Part, ...]:
     done = (finding for finding in repair_findings(repair) if not finding.fatal)
     remarks = (*part.remarks, Finding("mesh-pieces", message, False, {"pieces": count}), *done)
     if part.spec.has_features:
-        which = "holes, marks and notches: which of the pieces is meant is not said; give that piece a file of its own"
+        which = "holes, marks and seams: which of the pieces is meant is not said; give that piece a file of its own"
         remarks = (*remarks, Finding("mesh-pieces", which, fatal=True))
     return tuple(
         replace(part, spec=part.spec.blank(n), body=part_of(mesh, run), remarks=remarks)
@@ -108,7 +108,9 @@ def mesh_surface(part: Part, spec: MeshFile, tol: Tolerances) -> Outcome[Surface
     mesh = _oriented(repair, report)
     if mesh is None:
         return report.outcome(part, None)
-    report.findings += crossing_findings(mesh, repair.tolerance_mm, report.metrics)
+    crossed, folds = self_crossing(mesh, repair.tolerance_mm)
+    report.metrics.append(crossed)
+    report.findings += folds
     solid = thin_solid(part, mesh, tol) if spec.recognise and spec.seam is None and not report.fatal else None
     if solid is not None:
         part, mesh = solid.part, solid.mesh
@@ -121,7 +123,7 @@ def mesh_surface(part: Part, spec: MeshFile, tol: Tolerances) -> Outcome[Surface
     made = sewing.surface
     report.metrics += sewing.metrics
     report.findings += sewing.findings
-    exact = recovered(part, made.mesh, straight_loops(made), tol) if spec.recognise and not spec.cuts else None
+    exact = recovered(part, made.mesh, made.straight_loops, tol) if spec.recognise and not spec.cuts else None
     if exact is not None:
         report.metrics += exact.metrics
         report.findings += exact.findings
@@ -143,14 +145,8 @@ def _features(spec: PartSpec, made: MeshSurface, exact: Recovery | None, tol: To
     return placement(spec, lambda name, feature: placed_in_plane(name, feature, frame, tol), tol)
 
 
-def straight_loops(surface: MeshSurface) -> tuple[Numbers, ...]:
-    """Return the boundary loops with the sides of every cut straight: both are congruent, so their zigzag cancels."""
-    inside = np.concatenate([np.zeros(0, dtype=np.int64), *(side[1:-1] for pair in surface.seams for side in pair)])
-    return tuple(loop[~np.isin(loop, inside)] for loop in surface.loops)
-
-
 def _size(mesh: Mesh) -> float:
-    return float(norm(np.ptp(mesh.vertices, axis=0)))
+    return diagonal(mesh.vertices)
 
 
 def _oriented(repair: Repair, report: Report) -> Mesh | None:

@@ -81,17 +81,19 @@ def surface_findings(mesh: Mesh, edges: Edges, tolerance: float) -> Iterator[Fin
         yield Finding("mesh-cracks", f"{message}; export the surface as one body, or mesh it again", True, where)
 
 
-def crossing_findings(mesh: Mesh, tolerance: float, metrics: list[Metric]) -> Iterator[Finding]:
-    """Yield folds, neighbours that lie on each other, and places where the surface passes through itself."""
+def self_crossing(mesh: Mesh, tolerance: float) -> tuple[Metric, tuple[Finding, ...]]:
+    """Return how many pairs of faces meet where they should not, and the folds and crossings that they are.
+
+    Neighbours that lie on each other are folds.
+    """
     found = crossings(mesh, tolerance)
     shared = (mesh.faces[found.faces][:, :, None] == mesh.faces[found.others][:, None, :]).sum(axis=(1, 2))
-    metrics.append(Metric("crossing_faces", float(len(found.faces)), "", "sampled"))
-    for code, what, which in (
+    sorts = (
         ("mesh-folded", "is folded back on itself", np.flatnonzero(shared >= MANIFOLD)),
         ("self-crossing", "passes through itself or lies on itself", np.flatnonzero(shared < MANIFOLD)),
-    ):
-        if len(which):
-            yield _crossing(mesh, found, which, code, what)
+    )
+    findings = tuple(_crossing(mesh, found, which, code, what) for code, what, which in sorts if len(which))
+    return Metric("crossing_faces", float(len(found.faces)), "", "sampled"), findings
 
 
 def _crossing(mesh: Mesh, found: Crossings, which: Indices, code: str, what: str) -> Finding:

@@ -10,7 +10,7 @@ import numpy as np
 
 from stages.construct.curves import chain
 from stages.construct.features import NoPlaceError, Placement, placement
-from stages.geometry.arrays import Points3, Vector3, cross3, norm, unit
+from stages.geometry.arrays import Points3, Vector3, cross3, diagonal, norm, unit
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshborder import beyond
 from stages.geometry.meshnearest import OnMesh, at, nearest
@@ -107,7 +107,7 @@ def _curve(mesh: Mesh, spec: CurveSpec, *, closed: bool) -> tuple[OnMesh, ...]:
 
 
 def _size(mesh: Mesh) -> float:
-    return float(norm(np.ptp(mesh.vertices, axis=0)))
+    return diagonal(mesh.vertices)
 
 
 def _refuse_beyond(mesh: Mesh, points: Points3, found: OnMesh) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from stages.construct.bands import LEANING_DEG, positions
 from stages.construct.curves import Chain, even
-from stages.geometry.arrays import Array, ArrayValue, Points3, Values, cross3, dot, norm, unit
+from stages.geometry.arrays import Array, ArrayValue, Points3, Values, cross3, diagonal, dot, norm, unit
 from stages.geometry.curves import bezier, exactly
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshborder import beyond
@@ -26,7 +26,6 @@ from stages.geometry.meshfit import WIDE_DEGREE, fitted_at
 from stages.geometry.meshnearest import nearest
 from stages.geometry.meshrepair import repaired
 from stages.geometry.meshtopology import Edges, edges_of, turned, with_turned
-from stages.geometry.ruled import box
 from stages.geometry.smoothing import followed
 from stages.model.meshes import MeshNormals
 from stages.model.report import Finding, Metric, Where
@@ -168,7 +167,7 @@ def _along(link: Chain, v: Values) -> Array:
 
 def _closed(found: Touched) -> bool:
     """Return whether the curve ends where it begins."""
-    return bool(norm(found.points[-1] - found.points[0]) <= CLOSES * box(found.points))
+    return bool(norm(found.points[-1] - found.points[0]) <= CLOSES * diagonal(found.points))
 
 
 CLOSES = 1e-9
@@ -186,7 +185,7 @@ def _metrics(found: Touched) -> tuple[Metric, ...]:
     change, change_at = _worst(found, np.degrees(found.change_rad))
     known = found.residual_mm[np.isfinite(found.residual_mm)]
     return (
-        Metric("mesh_distance_mm", off, "mm", "sampled", OFF * box(found.points), off_at),
+        Metric("mesh_distance_mm", off, "mm", "sampled", OFF * diagonal(found.points), off_at),
         Metric("normal_change_deg", change, "deg", "sampled", CHANGE_DEG, change_at),
         Metric("mesh_noise", float(np.median(known)) if known.size else None, "mm"),
     )
@@ -196,7 +195,7 @@ def _refused(found: Touched, mesh: Mesh) -> tuple[Finding, ...]:
     """Return why the mesh has no normals along the curve."""
     gone = found.beyond_mm > BEYOND * found.side_mm
     off, off_at = _worst(found, found.off_mm)
-    allowed = OFF * box(found.points)
+    allowed = OFF * diagonal(found.points)
     if gone.any() and not gone.all() and not (found.off_mm[~gone] > allowed).any():
         beyond, place = _worst(found, found.beyond_mm)
         message = f"the curve leaves the mesh of its normals: it runs {beyond:.4g} mm beyond it at {_text(place)}"
@@ -238,7 +237,7 @@ def _slip(found: Touched, mesh: Mesh) -> str:
     few = found.points[:: max(len(found.points) // FEW, 1)]
     for slip in SLIPS:
         away = nearest(Mesh(mesh.vertices * slip, mesh.faces), few).distances
-        if float(away.max()) <= OFF * box(found.points):
+        if float(away.max()) <= OFF * diagonal(found.points):
             return f"; {slip:.4g} times as large it would lie along the curve: check `units`"
     return ": is it another mesh, or does it lie elsewhere?"
 

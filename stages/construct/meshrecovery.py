@@ -15,9 +15,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stages.construct.curves import plane_axes
 from stages.construct.meshbends import bent_sheet
 from stages.construct.meshdevelopable import developable
-from stages.geometry.arrays import Array, Numbers, Vector2, norm
+from stages.geometry.arrays import Array, Numbers, Vector2, diagonal, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshchart import Pulled, Unrolled, chart, pulled, unrolled
 from stages.geometry.meshprimitives import Plane
@@ -52,15 +53,15 @@ def recovered(part: Part, mesh: Mesh, loops: Loops, tol: Tolerances) -> Recovery
     found = recognised(mesh, chord_mm=tol.chord_mm)
     if found is None:
         return _bent(part, mesh, loops, tol) or _developable(part, mesh, loops, tol)
-    size = float(norm(np.ptp(mesh.vertices, axis=0)))
+    size = diagonal(mesh.vertices)
     accuracy = max(KEPT * found.deviation.most_mm, found.deviation.rounding_mm, ROUNDING * size)
     metrics, detail = _metrics(found.deviation, tol), _detail(found)
     if isinstance(found.primitive, Plane):
         plate, frame = _plate(part, mesh, loops, found.primitive, accuracy)
         return Recovery(plate, metrics, detail, frame)
     made = unrolled(mesh, found.primitive)
-    patch_of = _Ranged(made, loops, accuracy)
-    return Recovery(_rolled(part, mesh, patch_of), metrics, detail)
+    ranged = _Ranged(made, loops, accuracy)
+    return Recovery(_rolled(part, mesh, ranged), metrics, detail)
 
 
 def _bent(part: Part, mesh: Mesh, loops: Loops, tol: Tolerances) -> Recovery | None:
@@ -113,25 +114,20 @@ def _plate(part: Part, mesh: Mesh, loops: Loops, plane: Plane, accuracy: float) 
     frame = _plane_frame(plane)
     flat = (mesh.vertices - frame[0]) @ frame[1:].T
     outline, *holes = (refitted(flat[loop], accuracy=accuracy).edges for loop in loops)
-    size = float(norm(np.ptp(flat, axis=0)))
+    size = diagonal(flat)
     return Plate(part, outline, tuple(holes), size), frame
 
 
 def _plane_frame(plane: Plane) -> Array:
     """Return origin, x and y of a plane: those of the file where its normal is z, else by the arbitrary-axis rule."""
-    normal = plane.normal
-    level = float(norm(normal - np.array([0.0, 0.0, 1.0]))) <= LEVEL
-    helper = np.array([0.0, 1.0, 0.0] if np.abs(normal[:2]).max() < ARBITRARY else [0.0, 0.0, 1.0])
-    x = np.array([1.0, 0.0, 0.0]) if level else np.cross(helper, normal)
-    x = x / float(norm(x))
-    origin = np.array([0.0, 0.0, plane.point[2]]) if level else float(plane.point @ normal) * normal
-    return np.stack([origin, x, np.array([0.0, 1.0, 0.0]) if level else np.cross(normal, x)])
+    x, y, z = np.eye(3)
+    if float(norm(plane.normal - z)) <= LEVEL:
+        return np.stack([plane.point[2] * z, x, y])
+    return np.stack([float(plane.point @ plane.normal) * plane.normal, *plane_axes(plane.normal)])
 
 
 LEVEL = 1e-9
 """A normal nearer to z is z."""
-ARBITRARY = 1.0 / 64.0
-"""Of the DXF reference: the share of x and y in a normal below which y, and not z, makes the frame."""
 
 
 # Cylinders and cones
@@ -151,7 +147,7 @@ def _rolled(part: Part, mesh: Mesh, ranged: _Ranged) -> RuledSurface:
     made, polar = ranged.made, ranged.made.polar
     border = polar[np.concatenate(ranged.loops)]
     low, high = np.nanmin(border, axis=0), np.nanmax(border, axis=0)
-    size = float(norm(np.ptp(mesh.vertices, axis=0)))
+    size = diagonal(mesh.vertices)
     if len(ranged.loops) == 1 and _fills(ranged, low, high):
         return RuledSurface(part, (chart(made, *_middles(ranged, low, high)).patch,), size, whole_spans(1))
     edges = [refitted(made.flat[loop], accuracy=ranged.accuracy).edges for loop in ranged.loops]

@@ -15,8 +15,8 @@ from stages.errors import NoSolutionError
 from stages.geometry.arrays import Numbers, Points3, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcut import along, edge_lengths
-from stages.geometry.meshslit import followed, on_border, slit
-from stages.geometry.meshtopology import Edges, boundary_loops, edges_of
+from stages.geometry.meshslit import followed, slit
+from stages.geometry.meshtopology import Edges, boundary_loops, edges_of, on_border
 from stages.model.meshes import MeshFile
 from stages.model.report import Finding, Metric, Where
 from stages.model.scalars import Point, floats

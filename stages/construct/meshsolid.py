@@ -31,6 +31,7 @@ RIM_RAD = radians(45.0)
 RIM_SHARE = 0.5
 """Of both skins together: a square plate is no sheet if it is thicker than a quarter of its side."""
 SKINS = 2
+"""Of a sheet: inside and outside, each with an error of its own."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from math import radians
 import numpy as np
 
 from stages.construct.curves import Chain, chain, plane_axes
-from stages.construct.quintic import ZERO, Vector, combine, scaling, vector
+from stages.construct.quintic import ZERO, Vector, combine, inner, scaling, vector
 from stages.geometry import contours
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector3, cross2, dot, norm, unit
 from stages.geometry.curves import Along, Bezier, Circular, Curve, affine, exactly
@@ -70,9 +70,8 @@ Reach = tuple[Vector, Fraction]
 def meeting(plane: Plane, d: Vector) -> Reach:
     """Return the step along d that reaches the plane: ((P - r).n) / (d.n)."""
     n, point = vector(plane.normal), vector(plane.point)
-    across = sum((a * b for a, b in zip(d, n, strict=True)), Fraction(0))
-    height = sum((a * b for a, b in zip(point, n, strict=True)), Fraction(0))
-    return combine((-1 / across, n)), height / across
+    across = inner(d, n)
+    return combine((-1 / across, n)), inner(point, n) / across
 
 
 def _slid(r: Curve, reach: Reach, d: Vector) -> Curve:
@@ -86,7 +85,7 @@ def _distance(r: Curve, reach: Reach) -> Curve:
     return affine(r, (reach[0], ZERO, ZERO), (reach[1], Fraction(0), Fraction(0)))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlaneFrame:
     """A plane in space: origin and two axes, and how far the given curves leave it, mm."""
 

@@ -49,6 +49,11 @@ def combine(*terms: tuple[Fraction | int, Vector]) -> Vector:
     return x, y, z
 
 
+def inner(a: Vector, b: Vector) -> Fraction:
+    """Return a . b."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
+
+
 def first_derivative(end: End) -> Vector:
     """Return r' at the end: alpha T."""
     return combine((end.alpha, end.T))
@@ -70,7 +75,7 @@ def directrix(start: End, end: End) -> Bezier:
 
 def length_exact(a: Vector) -> Fraction:
     """Return |a|: exact where it is rational, else the double next to it."""
-    square = sum((x * x for x in a), Fraction(0))
+    square = inner(a, a)
     roots = isqrt(square.numerator), isqrt(square.denominator)
     if (roots[0] ** 2, roots[1] ** 2) == (square.numerator, square.denominator):
         return Fraction(*roots)

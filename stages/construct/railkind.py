@@ -110,6 +110,7 @@ def _is_straight(rail: Rail) -> bool:
 TANGENTS = 9
 """To a piece: a cubic's are the same at three places only if they are everywhere."""
 ONE_WAY = 1e-12
+"""Of a unit vector: some thousand roundings, and a micrometre of lift per thousand kilometres."""
 
 
 def _described(strip: Strip, *, closed: bool) -> str:

@@ -22,9 +22,9 @@ import numpy as np
 
 from stages.construct.plain import directrix_of, meeting
 from stages.construct.quintic import combine, vector
-from stages.geometry.arrays import ArrayValue, Values, Vector3, dot, norm, unit
+from stages.geometry.arrays import ArrayValue, Vector3, dot, norm, unit
 from stages.geometry.curves import Along, Circular, Curve, Difference, affine, exactly, restrict
-from stages.geometry.extremum import maximum
+from stages.geometry.extremum import minimum
 from stages.geometry.halfchord import TOUCHING, HalfChord, excess
 from stages.geometry.ruled import RuledPatch
 from stages.model.ducts import Saddle, Tee
@@ -157,11 +157,7 @@ AT_END = 1e-12
 
 def _least(p: Curve, e: Vector3) -> float:
     """Return the least distance that rulings run along e, mm."""
-
-    def backwards(v: Values) -> Values:
-        return -dot(p.jet(v, 0)[0], e)
-
-    return -maximum(backwards)[0]
+    return minimum(lambda v: dot(p.jet(v, 0)[0], e))[0]
 
 
 def _misses(crossing: Crossing, largest: float, place: float) -> Finding:

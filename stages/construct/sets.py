@@ -12,6 +12,7 @@ A tee with its main's opening is the branch and a plate: the saddle of the one g
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from math import cos, radians, sin
 
 from msgspec.structs import replace as with_fields
@@ -23,7 +24,7 @@ from stages.model.ducts import Elbow, MainOpening, Tee, is_set
 from stages.model.faces import FaceFile
 from stages.model.material import Part
 from stages.model.meshes import MeshFile
-from stages.model.part import Cylinder, Plane
+from stages.model.part import Cylinder, PartSpec, Plane
 from stages.model.scalars import Coordinate, Length, Number, coordinate
 
 
@@ -51,10 +52,24 @@ def parts_of(part: Part) -> tuple[Part, ...]:
         return face_blanks(part)
     if not is_set(part.spec.surface):
         return (part,)
-    return tuple(
-        replace(part, spec=with_fields(part.spec.blank(n), surface=one))
+    specs = [
+        with_fields(part.spec.blank(n, OUTLINE if isinstance(one, MainOpening) else STRIP), surface=one)
         for n, one in enumerate(_blanks(part.spec.surface), 1)
-    )
+    ]
+    if isinstance(part.spec.surface, Elbow):
+        specs = [*(_sewn_on(*pair) for pair in pairwise(specs)), specs[-1]]
+    return tuple(replace(part, spec=spec) for spec in specs)
+
+
+STRIP, OUTLINE = ("c0", "c1", "start", "end"), ("outline",)
+"""The edges of a blank that is rolled, and of a plate."""
+
+
+def _sewn_on(gore: PartSpec, after: PartSpec) -> PartSpec:
+    """Return a gore whose seam at its end is sewn to that of the gore after it, unless it is to something else."""
+    mate = next((f"{after.name}.{seam.called}" for seam in after.seam if seam.edge == "c0"), None)
+    seams = (with_fields(one, mate=mate) if one.edge == "c1" and one.mate is None else one for one in gore.seam)
+    return with_fields(gore, seam=tuple(seams))
 
 
 def _blanks(surface: Table) -> tuple[Table, ...]:

@@ -27,9 +27,9 @@ from stages.geometry.curves import Circular, Curve, affine, bezier, exactly
 from stages.geometry.extremum import maximum
 from stages.geometry.ruled import RuledPatch
 from stages.geometry.tangents import end_tangents, total, unit_tangent
-from stages.model.developables import RIGHT_ANGLE, Slope
+from stages.model.developables import Slope
 from stages.model.report import Finding, Metric, Where
-from stages.model.scalars import floats
+from stages.model.scalars import RIGHT_ANGLE, floats
 from stages.model.tolerances import Tolerances
 
 Made = tuple[tuple[RuledPatch, ...], tuple[Metric, ...], tuple[Finding, ...]]
@@ -132,6 +132,7 @@ def _samples(link: Chain) -> np.ndarray:
 
 
 SAMPLES = 65
+"""To a curve: a size and a distance from a plane, each to some 1e-4 of itself where a curve bends between them."""
 
 
 def _off_plane(link: Chain, normal: Vector3) -> float:
@@ -160,8 +161,12 @@ def _ridge_findings(link: Chain, fall: Fall, spec: Slope) -> tuple[Finding, ...]
 
 
 def _down(length_mm: float) -> float:
-    """Return the length rounded down to 1e-6 mm: what the message says must do."""
-    return floor(length_mm * 1e6) / 1e6
+    """Return the length rounded down to a nanometre: what the message says must do."""
+    return floor(length_mm * MILLION) / MILLION
+
+
+MILLION = 1e6
+"""Nanometres to a millimetre: a length to be typed needs no more."""
 
 
 ROUNDING = 1e-13

@@ -14,11 +14,10 @@ from itertools import pairwise
 import numpy as np
 
 from stages.construct.bands import PLACES, least, place, positions
-from stages.geometry.arrays import EPS, Vector3, cross3, dot, norm, unit
+from stages.geometry.arrays import EPS, Vector3, cross3, diagonal, dot, norm, unit
 from stages.geometry.curves import Bezier, Curve, RationalBezier, affine, bezier, exactly
 from stages.geometry.envelope import Rectifying, bend
 from stages.geometry.inflection import bending, through
-from stages.geometry.ruled import box
 from stages.geometry.tangents import turn_between
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
@@ -68,7 +67,7 @@ def is_straight(curve: Curve) -> bool:
 
 def piece_ruling(curve: Curve) -> Curve | RunsOff:
     """Return the rulings over a piece that is not straight, or where they run off."""
-    size = box(positions([curve]))
+    size = diagonal(positions([curve]))
     flattest = least([partial(bend, curve)])
     if flattest.value * size > GENTLE:
         return Rectifying(curve)

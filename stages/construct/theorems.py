@@ -22,6 +22,7 @@ from stages.model.scalars import floats
 from stages.model.tolerances import Tolerances
 
 DEGREE_A, DEGREE_C = 13, 9
+"""Of p . (r' x r1') for two quintics: 5 + 4 + 4; and of p' x p: 4 + 5."""
 
 
 def exact_curves(patch: RuledPatch) -> tuple[bernstein.Vector, bernstein.Vector]:

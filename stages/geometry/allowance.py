@@ -64,7 +64,7 @@ class Widened:
     strips: tuple[Strip | None, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Join:
     """What joins two strips: where the one before ends and the one after begins, and a corner on the way between."""
 

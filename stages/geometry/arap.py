@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import EPS, Array, ArrayValue, Indices, Points2, Triples, Values, Whole, norm
+from stages.geometry.arrays import EPS, Array, ArrayValue, Indices, Numbers, Points2, Triples, Values, norm
 from stages.geometry.intrinsic import areas
 from stages.geometry.sparsesolve import Factors, factorised
 
@@ -47,7 +47,7 @@ class Sheet(ArrayValue):
     count: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Settled:
     """Flat positions at rest.
 
@@ -150,7 +150,7 @@ def free_unknowns(rest: Sheet, positions: Array) -> Indices:
     return np.setdiff1d(unknowns, held)
 
 
-def slots_of(rest: Sheet) -> tuple[csc_array, Whole]:
+def slots_of(rest: Sheet) -> tuple[csc_array, Numbers]:
     """Return a matrix with the right places and, for each entry of the triangles' matrices, its place there."""
     unknowns = (2 * rest.faces[..., None] + np.arange(2)).reshape(-1, 6)
     rows, columns = (np.broadcast_to(x, (len(unknowns), 6, 6)).ravel()
@@ -161,7 +161,7 @@ def slots_of(rest: Sheet) -> tuple[csc_array, Whole]:
     return csc_array((np.zeros(len(keys)), keys % n, pointers), shape=(n, n)), slots.astype(np.int64)
 
 
-def _factors(rest: Sheet, positions: Points2, slots: tuple[csc_array, Whole], free: Whole) -> Factors:
+def _factors(rest: Sheet, positions: Points2, slots: tuple[csc_array, Numbers], free: Numbers) -> Factors:
     """Return the factors of the second derivatives, made positive definite if they are not."""
     for convex in (False, True):
         pattern, places = slots

@@ -22,7 +22,7 @@ from scipy.sparse.linalg import splu
 
 from stages.errors import NoSolutionError
 from stages.geometry.arap import Settled, Sheet, energy, free_unknowns, second, settled, slope_of, slots_of
-from stages.geometry.arrays import Array, Points2, Whole, norm
+from stages.geometry.arrays import Array, Numbers, Points2, norm
 from stages.geometry.sparsesolve import factorised
 from stages.geometry.ties import Ties, derivatives, left_sides, off_by, second_derivatives
 
@@ -39,14 +39,14 @@ STIFF = 1e4
 """Of the squares of the ties, over the second derivatives of the energy (which are about 1): enough to see them."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Problem:
     """The triangles at rest, their ties, and what Newton's method needs to know of both."""
 
     rest: Sheet
     ties: Ties
-    free: Whole
-    slots: tuple[csc_array, Whole]
+    free: Numbers
+    slots: tuple[csc_array, Numbers]
     still: float
 
 

@@ -95,11 +95,18 @@ def _longest(angle: Values, place: Plane, tolerance: Values, start: int, width: 
             bad = end
         if bad - good <= 1 or FULL <= excess <= 1.0:
             break
-        guess = start + int((end - start) * min(max(0.98 / np.cbrt(max(excess, 1e-9)), 0.25), 2.0))
+        longer = SHORT_OF / np.cbrt(max(excess, np.finfo(float).tiny))
+        guess = start + int((end - start) * min(max(longer, SHRINKING), GROWING))
         if bad > last and last - start < NEARLY_THERE * (guess - start):
             guess = last
         end = guess if good < guess < bad else (good + bad) // 2
     return good, used
+
+
+SHORT_OF = 0.98
+"""The deviation grows with the cube of the length: so much of the length that would use the tolerance is tried next."""
+SHRINKING, GROWING = 0.25, 2.0
+"""What one trial may change the length by: the cube holds for short arcs only."""
 
 
 def _excess(angle: Values, place: Plane, tolerance: Values, start: int, end: int) -> float:

@@ -86,7 +86,7 @@ def chain(stretch: Stretch, *, accuracy: float, least_piece: float) -> Chain:
         if found.miss > UNEVEN:
             share *= 0.5
             continue
-        far, between = _deviation(stretch, place, breaks, found)
+        far, between = _deviation(place, breaks, found)
         if far.max() + between <= accuracy:
             return Chain(found.vertices, found.bulges, float(far.max()) + between, between)
         best = min(best, float(far.max()) + between)
@@ -200,7 +200,7 @@ def _least_step(
     return move, -free_turn * (left + right)
 
 
-def _deviation(stretch: Stretch, place: Plane, breaks: Joints, joined: _Joined) -> tuple[Array, float]:
+def _deviation(place: Plane, breaks: Joints, joined: _Joined) -> tuple[Array, float]:
     """Return the largest distance of the samples of each arc to it, and what may lie between samples, in mm."""
     piece = np.repeat(np.arange(breaks.size - 1), np.diff(breaks))
     vertices = as_plane(joined.vertices)

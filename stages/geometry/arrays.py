@@ -34,9 +34,6 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 """An array of whole numbers whose shape the docstring gives."""
 
-Whole = NDArray[np.int64]
-"""An array of int64 whose shape the docstring gives."""
-
 EPS = float(np.finfo(np.float64).eps)
 """Spacing of the doubles at 1: 2.2e-16."""
 
@@ -77,7 +74,7 @@ def locked(values: Array) -> Array:
     return copy
 
 
-def _numbers(values: NDArray[np.int64]) -> NDArray[np.int64]:
+def _numbers(values: Numbers) -> Numbers:
     """Return a read-only int64 copy."""
     copy = np.array(values, dtype=np.int64)
     copy.setflags(write=False)
@@ -104,6 +101,20 @@ def dot(a: Array, b: Array) -> Array:
 def norm(a: Array) -> Array:
     """Return the Euclidean length along the last axis."""
     return np.asarray(np.sqrt(np.einsum("...i,...i->...", a, a)))
+
+
+def diagonal(points: Array) -> float:
+    """Return the diagonal of the bounding box of points, shape (n, d), in their unit."""
+    return float(norm(np.ptp(points, axis=0)))
+
+
+def similarities(first: Array, second: Array) -> tuple[Array, Array]:
+    """Return half the size of the similarity of 2 x 2 matrices, and of their mirrored similarity, by their columns.
+
+    Their sum and their difference are the singular values, without the cancellation of a characteristic polynomial.
+    """
+    (a, c), (b, d) = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
+    return np.asarray(np.hypot(a + d, c - b) / 2.0), np.asarray(np.hypot(a - d, c + b) / 2.0)
 
 
 def unit(a: Array) -> Array:

@@ -35,8 +35,8 @@ ZERO_LENGTH_MM = 1e-6
 SPENT = 0.7
 """Share of the accuracy that the fit may use; the rest is for rounding, for the reader, and for the measurement."""
 
-EXACT = 1e-9
-"""An edge this close to a line or circle, as a share of its size, is one."""
+EXACT, EXACT_SHARE = 1e-9, 1e-3
+"""An edge this close to a line or circle is one: as a share of its size, and of the accuracy asked for."""
 
 SMOOTH_JOIN_RAD = radians(1.0)
 """Two edges that meet at less than this run on smoothly: both keep their directions there."""
@@ -161,9 +161,6 @@ def _traced(edge: _Edge, keep_start: bool, keep_end: bool, accuracy: float) -> _
     if sweep is not None:
         return _arcs(edge.samples.points, sweep)
     return _curved(edge, keep_start, keep_end, accuracy)
-
-
-EXACT_SHARE = 1e-3
 
 
 def _line(start: Array, end: Array) -> _Run:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Values
-from stages.geometry.numbering import HELD, Numbering, Numbers
+from stages.geometry.arrays import Array, ArrayValue, Numbers, Values
+from stages.geometry.numbering import HELD, Numbering
 
 
 @dataclass(frozen=True, slots=True, eq=False)

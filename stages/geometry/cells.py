@@ -36,7 +36,7 @@ DIRECTIONS = unit(
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Cells:
     """n cells by the number of their patch and their place in the chain of first strips.
 
@@ -61,7 +61,7 @@ class Cells:
         return Cells(*(field[chosen] for field in fields))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Jets:
     """c0, p and their derivatives by v, shape (2, n, 3) each."""
 

@@ -142,23 +142,6 @@ def nearest(some: Pieces, owner: Indices, to: Pieces, *, within: float) -> dict[
     return {name: value for name, value in sorted(least.items()) if value <= within}
 
 
-def inside(point: Points2, closed: Pieces) -> Mask:
-    """Return which points lie within a closed contour; a point on the contour or on a chord may go either way.
-
-    Parity: the polygon of the chords, and each segment of a circle between chord and arc, turn the answer round.
-    """
-    start, end = closed.start[None], closed.end[None]
-    at = point[:, None]
-    spans = (start[..., 1] > at[..., 1]) != (end[..., 1] > at[..., 1])
-    right = cross2(end - start, at - start) * np.sign(end[..., 1] - start[..., 1]) > 0.0
-    flips = np.count_nonzero(spans & right, axis=1)
-    for i in np.flatnonzero(closed.bulge):
-        arc = closed.take(np.full(point.shape[0], i))
-        flips += (_power(point, arc) < 0.0) & _on_side(point, arc)
-    odd: Mask = flips % 2 == 1
-    return odd
-
-
 def distances(a: Pieces, b: Pieces) -> Values:
     """Return the distance of each piece of `a` to the piece of `b` at the same place, in mm."""
     least = np.full(a.bulge.shape, np.inf)
@@ -175,8 +158,8 @@ def point_distances(point: Points2, to: Pieces) -> Values:
     along = np.clip(dot(point - to.start, chord) / dot(chord, chord), 0.0, 1.0)
     line = norm(point - to.start - along[:, None] * chord)
     away = unit(point - to.centre)
-    signed = _power(point, to) / np.where(to.bulge == 0.0, 1.0, norm(point - to.centre) + to.radius)
-    arc = np.where(_on_side(point - signed[:, None] * away, to), np.minimum(np.abs(signed), ends), ends)
+    signed = power(point, to) / np.where(to.bulge == 0.0, 1.0, norm(point - to.centre) + to.radius)
+    arc = np.where(on_side(point - signed[:, None] * away, to), np.minimum(np.abs(signed), ends), ends)
     return np.where(to.bulge == 0.0, line, arc)
 
 
@@ -186,7 +169,7 @@ def _offset(some: Pieces) -> Values:
     return (1.0 / safe - safe) / 4.0
 
 
-def _power(point: Points2, of: Pieces) -> Values:
+def power(point: Points2, of: Pieces) -> Values:
     """Return |p - c|^2 - r^2 of each point and circle, in mm2, without cancellation of large radii."""
     middle = (of.start + of.end) / 2.0
     height = cross2(of.end - of.start, point - middle)
@@ -194,7 +177,7 @@ def _power(point: Points2, of: Pieces) -> Values:
     return power
 
 
-def _on_side(point: Points2, of: Pieces) -> Mask:
+def on_side(point: Points2, of: Pieces) -> Mask:
     """Return whether a point of the circle lies on the arc: on the side of the chord to which the bulge swells."""
     side: Mask = np.sign(of.bulge) * cross2(of.end - of.start, point - of.start) <= 0.0
     return side
@@ -253,16 +236,16 @@ def _line_meets_arc(line: Pieces, arc: Pieces) -> Mask:
     """Return which segments meet their arc: roots of the power along the line, on both."""
     along = line.end - line.start
     square, half = dot(along, along), dot(along, line.start - arc.centre)
-    power = _power(line.start, arc)
-    root = np.sqrt(np.maximum(half**2 - square * power, 0.0))
+    beyond = power(line.start, arc)
+    root = np.sqrt(np.maximum(half**2 - square * beyond, 0.0))
     larger = -(half + np.copysign(root, half))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        roots = (larger / square, np.where(larger == 0.0, np.inf, power / larger))
-    met = np.zeros(power.shape, dtype=bool)
+        roots = (larger / square, np.where(larger == 0.0, np.inf, beyond / larger))
+    met = np.zeros(beyond.shape, dtype=bool)
     for t in roots:
         inside = (t >= 0.0) & (t <= 1.0)
-        met |= inside & _on_side(line.start + np.where(inside, t, 0.0)[:, None] * along, arc)
-    real: Mask = met & (half**2 >= square * power)
+        met |= inside & on_side(line.start + np.where(inside, t, 0.0)[:, None] * along, arc)
+    real: Mask = met & (half**2 >= square * beyond)
     return real
 
 
@@ -279,6 +262,6 @@ def _arcs_meet(a: Pieces, b: Pieces) -> Mask:
     foot = a.centre + along[:, None] * towards
     met = np.zeros(apart.shape, dtype=bool)
     for point in (foot + left, foot - left):
-        met |= _on_side(point, a) & _on_side(point, b)
+        met |= on_side(point, a) & on_side(point, b)
     real: Mask = met & (square >= 0.0) & within_reach
     return real

@@ -16,6 +16,8 @@ the carrier of a piece.  Along another piece, with x = tan(angle from its middle
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
+from shapely import STRtree, box
 
 from stages.geometry.arcpath import (
     ArcPath,
@@ -30,7 +32,7 @@ from stages.geometry.arcpath import (
     sweeps,
     swept,
 )
-from stages.geometry.arrays import Array, Indices, Mask, Points2, Values, cross2, dot
+from stages.geometry.arrays import Indices, Mask, Points2, Values, cross2, dot, norm
 from stages.geometry.overlap import QUARTER_BULGE, fractions_beside, near_pairs
 
 COINCIDENT = 1e-8
@@ -38,10 +40,10 @@ COINCIDENT = 1e-8
 they stand for, twice over, and the ends of pieces that meet there are off by as much."""
 
 BLOCK = 500
-"""Points whose winding numbers are counted in one go: some 1e6 pairs, so the arrays stay within a few MB."""
+"""Points whose winding numbers are counted in one go: 1e6 pairs where every piece is beside every point."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Meeting:
     """Places where pieces of a path meet others: the piece by number, and the share of its sweep."""
 
@@ -186,29 +188,28 @@ def windings(path: ArcPath, points: Points2) -> Values:
     """Return how often a closed path winds about each point, counter-clockwise positive; arcs up to a half circle.
 
     The polygon of the chords, by its passages of the ray to the right; each circular segment that holds the point adds
-    its sense.  A point on the path may go either way.
+    its sense.  Pieces above, below and left of a point do neither.  A point on the path may go either way.
     """
-    return np.concatenate([_windings(path, points[i : i + BLOCK]) for i in range(0, points.shape[0], BLOCK)])
+    start, end = chords(path)
+    reach = np.abs(path.bulges[: start.shape[0]]) * norm(end - start) / 2.0
+    low, high = np.minimum(start, end) - reach[:, None], np.maximum(start, end) + reach[:, None]
+    leftmost = float(min(low[:, 0].min(), points[:, 0].min()))
+    tree = STRtree(box(leftmost, low[:, 1], np.nextafter(high[:, 0], np.inf), high[:, 1]))
+    wound = np.zeros(points.shape[0])
+    for first in range(0, points.shape[0], BLOCK):
+        place, piece = tree.query(shapely.points(points[first : first + BLOCK]))
+        found = _passes(path, piece, points[first + place])
+        wound[first : first + BLOCK] = np.bincount(place, found, minlength=wound[first : first + BLOCK].size)
+    return wound
 
 
-def _windings(path: ArcPath, points: Points2) -> Values:
-    start, end = (ends[None] for ends in chords(path))
-    at = points[:, None]
+def _passes(path: ArcPath, piece: Indices, at: Points2) -> Values:
+    """Return what each piece adds to the winding number of its point."""
+    start, end = (ends[piece] for ends in chords(path))
     side = cross2(end - start, at - start)
-    rises = (start[..., 1] <= at[..., 1]) & (end[..., 1] > at[..., 1]) & (side > 0.0)
-    falls = (start[..., 1] > at[..., 1]) & (end[..., 1] <= at[..., 1]) & (side < 0.0)
-    arcs = np.flatnonzero(path.bulges)
-    held = _held(path, arcs, at, side[:, arcs])
-    winding: Array = rises.sum(axis=1) - falls.sum(axis=1) + held @ np.sign(path.bulges[arcs])
-    return winding
-
-
-def _held(path: ArcPath, arcs: Indices, at: Array, side: Array) -> Array:
-    """Return which circular segments, between chord and arc, hold each point: as numbers, shape (points, arcs)."""
-    sense = np.sign(path.bulges[arcs])
-    angle = directions(path)[0][arcs]
-    offset = at - chords(path)[0][arcs][None]
-    tangent = np.stack([np.cos(angle), np.sin(angle)], axis=1)[None]
-    carrier = 2.0 * cross2(tangent, offset) - curvatures(path)[arcs] * dot(offset, offset)
-    held: Array = ((carrier * sense > 0.0) & (side * sense < 0.0)).astype(np.float64)
-    return held
+    rises = (start[:, 1] <= at[:, 1]) & (end[:, 1] > at[:, 1]) & (side > 0.0)
+    falls = (start[:, 1] > at[:, 1]) & (end[:, 1] <= at[:, 1]) & (side < 0.0)
+    sense = np.sign(path.bulges[piece])
+    held = (_carrier(path, piece, at) * sense > 0.0) & (side * sense < 0.0)
+    added: Values = rises.astype(np.float64) - falls + held * sense
+    return added

@@ -59,7 +59,7 @@ MOST_PAIRS = 2500
 """Pairs of cells that are halved: where more are left, sheets lie on each other over a whole area."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Crossing:
     """A place where the surface passes through itself: patches, v and u on both sheets, the point, and how deep, mm."""
 
@@ -81,7 +81,7 @@ class _Strip:
     size_mm: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Sheet:
     """One sheet at n places: points, S_u, S_v, shape (n, 3)."""
 

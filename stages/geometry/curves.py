@@ -280,14 +280,18 @@ def _product(f: Sequence[Fraction], g: Sequence[Fraction]) -> list[Fraction]:
 
 def elevated(points: ExactPoints, degree: int) -> ExactPoints:
     """Return the control points of the same curve in a higher degree."""
-    while len(points) <= degree:
-        n = len(points)
-        inner = [_between(points[i], points[i - 1], Fraction(i, n)) for i in range(1, n)]
-        points = (points[0], *inner, points[-1])
-    return points
+    rows: Sequence[Sequence[Fraction]] = points
+    while len(rows) <= degree:
+        rows = raised(rows)
+    return tuple((x, y, z) for x, y, z in rows)
 
 
-def _between(a: ExactPoint, b: ExactPoint, share: Fraction) -> ExactPoint:
-    """Return (1 - share) a + share b."""
-    rest = 1 - share
-    return rest * a[0] + share * b[0], rest * a[1] + share * b[1], rest * a[2] + share * b[2]
+def raised(rows: Sequence[Sequence[Fraction]]) -> list[tuple[Fraction, ...]]:
+    """Return the Bernstein coefficients, rows of any length, of the same polynomials one degree higher."""
+    n = len(rows)
+    shares = [Fraction(i, n) for i in range(1, n)]
+    inner = [
+        tuple(share * a + (1 - share) * b for a, b in zip(rows[i], rows[i + 1], strict=True))
+        for i, share in enumerate(shares)
+    ]
+    return [tuple(rows[0]), *inner, tuple(rows[-1])]

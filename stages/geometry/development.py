@@ -24,7 +24,7 @@ from numpy.polynomial import legendre
 from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, dot, norm, unit
 from stages.geometry.flatmap import Development
-from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
+from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS, beginnings
 from stages.geometry.ruled import RuledPatch, across, frames, sideways
 
 
@@ -70,7 +70,7 @@ class RulingMap(ArrayValue):
         """
         gone = norm(self.patch.p.jet(v, 0)[0]) <= NO_LENGTH * _scale(self.patch)
         v = np.where(gone, np.clip(v, BESIDE, 1.0 - BESIDE), v)
-        e, e_perp = _axes(angle(self, v))
+        e, e_perp = axes(angle(self, v))
         f = frames(self.patch, v)
         ruling, w = unit(f.p), unit(across(f, 0.5)[1])
         s_v, aside = across(f, u)
@@ -105,13 +105,14 @@ def _flat_piece(patch: RuledPatch, phi0: float, q0: Array, subject: str) -> Ruli
     half = np.diff(breaks)[:, None] / 2.0
     # the turning is scaled to a length (see _rates): back to rad here
     turn = half * quadrature.coefficients(rates[..., 0] / scale) @ ANTIDERIVATIVE.T
-    begin = _starts(turn[..., None], np.array([phi0]))[:, 0]
+    begin = beginnings(turn[..., None], np.array([phi0]))[:, 0]
     phi = turn.copy()
     phi[:, 0] += begin
-    velocities = _velocities(rates, *_axes(phi @ AT_NODES.T))
+    velocities = _velocities(rates, *axes(phi @ AT_NODES.T))
     steps = half[..., None, None] * np.einsum("lk,pkec->plec", ANTIDERIVATIVE, quadrature.coefficients(velocities))
-    rulings = norm(patch.p.jet(breaks[:-1], 0)[0])[:, None] * _axes(begin)[0]
-    return RulingMap(patch, breaks, phi, np.stack([_starts(steps[:, :, 0], q0), rulings], axis=1), steps)
+    rulings = norm(patch.p.jet(breaks[:-1], 0)[0])[:, None] * axes(begin)[0]
+    starts = np.stack([beginnings(steps[:, :, 0], q0), rulings], axis=1)
+    return RulingMap(patch, breaks, phi, starts, steps)
 
 
 def _velocities(rates: Array, e: Array, e_perp: Array) -> Array:
@@ -138,14 +139,7 @@ MOST_TURN = 1.0
 themselves resolved leave their product so.  Over 2 pi they are at 1e-8."""
 
 
-def _starts(local: Array, start: Array) -> Array:
-    """Return where each panel begins, (m, c): where the one before ends; from series (m, 17, c) and the start (c,)."""
-    ends = local.sum(axis=1)
-    begun: Array = np.concatenate([np.zeros((1, ends.shape[1])), np.cumsum(ends, axis=0)[:-1]]) + start
-    return begun
-
-
-def _axes(phi: Array) -> tuple[Array, Array]:
+def axes(phi: Array) -> tuple[Array, Array]:
     """Return E and E_perp at angles phi, shape (..., 2)."""
     c, s = np.cos(phi), np.sin(phi)
     return np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)

@@ -54,6 +54,7 @@ class Drilled(ArrayValue):
 
 
 QUARTER = 0.25
+"""Of a turn: the derivative of a point of a circle is the point a quarter on."""
 
 
 def drilled(strip: Strip, place: Vector2, radius: float) -> Drilled | None:

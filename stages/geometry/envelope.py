@@ -21,11 +21,11 @@ along the curve, where n does not turn.  `bend`, `turn` and `crossing_sine` meas
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Matrix, Values, Vector3, cross3, dot, norm
+from stages.geometry.arrays import Array, ArrayValue, Matrix, Values, Vector3, cross3, dot, locked, norm
 from stages.geometry.curves import Curve, restrict
 from stages.geometry.extremum import maxima
 from stages.geometry.ruled import RuledPatch
@@ -41,7 +41,11 @@ class Rectifying(ArrayValue):
     curve: Curve
 
     def jet(self, v: Values, order: int) -> Array:
-        """Return value and derivatives up to `order`, shape (order + 1, n, 3).
+        """Return value and derivatives up to `order`, shape (order + 1, n, 3)."""
+        return derivatives(_kept(self, v.tobytes(), max(order, USUAL))[: order + 1])
+
+    def series(self, v: Values, order: int) -> Array:
+        """Return the power series up to `order`, shape (order + 1, n, 3).
 
         With b = r' x r'':  B = b / |b|  and  (tau / kappa) T = (b . r''') |r'|^2 / |b|^3 r'.
         """
@@ -50,7 +54,7 @@ class Rectifying(ArrayValue):
         b = outer(r1, r2)[: order + 1]
         square = inner(b, b)
         lean = product(product(inner(b, slope(r2)), inner(r1, r1)), power(square, -1.0))
-        return derivatives(scaled(power(square, -0.5), b + scaled(lean, r1)))
+        return scaled(power(square, -0.5), b + scaled(lean, r1))
 
     def image(self, matrix: Rows, shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
@@ -69,7 +73,11 @@ class Conjugate(ArrayValue):
     normal: Curve
 
     def jet(self, v: Values, order: int) -> Array:
-        """Return value and derivatives up to `order`, shape (order + 1, n, 3).
+        """Return value and derivatives up to `order`, shape (order + 1, n, 3)."""
+        return derivatives(_kept(self, v.tobytes(), max(order, USUAL))[: order + 1])
+
+    def series(self, v: Values, order: int) -> Array:
+        """Return the power series up to `order`, shape (order + 1, n, 3).
 
         With m across the curve:  g = (m x m') |r'| / (|m| (m' . r'))  and  m' . r' = -m . r''.
         """
@@ -77,7 +85,7 @@ class Conjugate(ArrayValue):
         m = _perpendicular(taylor(self.normal.jet(v, order + 1)), r1)
         lengths = product(power(inner(r1, r1), 0.5), power(inner(m, m), -0.5))
         factor = product(lengths, power(inner(m, slope(r1)), -1.0))
-        return derivatives(scaled(-factor, outer(m, slope(m))))
+        return scaled(-factor, outer(m, slope(m)))
 
     def image(self, matrix: Rows, shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
@@ -87,6 +95,16 @@ class Conjugate(ArrayValue):
         """Return the part over [low, high]."""
         made = Conjugate(restrict(self.curve, low, high), restrict(self.normal, low, high))
         return _facing(made, low, high)
+
+
+USUAL = 2
+"""Frames of a patch ask for two derivatives of one edge and of the ruling, and for one of the other edge."""
+
+
+@lru_cache(maxsize=4)
+def _kept(ruling: Rectifying | Conjugate, v: bytes, order: int) -> Array:
+    """Return the power series of a ruling; both edges of a strip ask for it at the same places, one after the other."""
+    return locked(ruling.series(np.frombuffer(v), order))
 
 
 def _perpendicular(n: Array, r1: Array) -> Array:

@@ -2,6 +2,7 @@
 
 Along lines and arcs t grows evenly.  Along any other edge the speed is resolved on panels of t (`quadrature`), its
 antiderivative is the length up to each t, and Newton's method on the panel gives the t of a length, to rounding.
+What it reached is looked at: a length that it does not meet is no solution.
 """
 
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
+from stages.errors import NoSolutionError
 from stages.geometry import quadrature
 from stages.geometry.arclength import speed_of
 from stages.geometry.arrays import Array, ArrayValue, Indices, Values, norm
@@ -18,6 +20,8 @@ from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 STEPS = 50
 ROUNDING = 1e-15
 """A step of Newton's method below this share of its panel changes nothing."""
+MET = 1e-12
+"""Share of an edge within which a length must be met: the quadrature of the whole is known to a tenth of that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +41,10 @@ class Measured(ArrayValue):
         return float(self.starts[-1])
 
     def parameters(self, lengths_mm: Values) -> Values:
-        """Return the t at lengths from the beginning, each within the edge."""
+        """Return the t at lengths from the beginning, each within the edge.
+
+        Raises NoSolutionError where a length is not met.
+        """
         panel: Indices = np.clip(np.searchsorted(self.starts, lengths_mm, side="right") - 1, 0, len(self.series) - 1)
         rest, own = lengths_mm - self.starts[panel], self.series[panel]
         slope: Array = np.asarray(legendre.legder(own, axis=1))
@@ -49,6 +56,9 @@ class Measured(ArrayValue):
             x = np.clip(x - step, -1.0, 1.0)
             if np.abs(step).max(initial=0.0) <= ROUNDING:
                 break
+        missed = float(np.abs(_value(own, x) - rest).max(initial=0.0))
+        if missed > MET * self.length_mm:
+            raise NoSolutionError("place at a length", reached=missed, wanted=MET * self.length_mm, unit="mm")
         low, high = self.breaks[panel], self.breaks[panel + 1]
         t: Values = low + (high - low) * (x + 1.0) / 2.0
         return t

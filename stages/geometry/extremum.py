@@ -32,6 +32,12 @@ def maximum(function: Callable[[Values], Values]) -> tuple[float, float]:
     return maxima(lambda v: function(v)[:, None])[0]
 
 
+def minimum(function: Callable[[Values], Values]) -> tuple[float, float]:
+    """Return (least value, where): as `maximum`."""
+    value, v = maximum(lambda places: -function(places))
+    return -value, v
+
+
 def maxima(functions: Callable[[Values], Array]) -> list[tuple[float, float]]:
     """Return (largest value, where) of several functions of v, given as the columns of one array."""
     v = _first_places()

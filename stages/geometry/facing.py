@@ -17,11 +17,8 @@ from scipy.sparse.csgraph import connected_components
 from shapely import STRtree, box, linestrings
 
 from stages.geometry.arcpath import ArcPath, chords
-from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, Whole, dot, norm, unit
-
-STRAIGHT = 1e-12
-"""An arc flatter than this counts as its chord, as for distances (`stages.geometry.clearance`)."""
-
+from stages.geometry.arrays import Array, ArrayValue, Indices, Numbers, Points2, Values, dot, norm, unit
+from stages.geometry.clearance import FLAT_BULGE
 
 BIT_MM = 5e-3
 """Shorter overlaps are none: half of what counts as cut twice."""
@@ -76,8 +73,8 @@ class Facing(ArrayValue):
     ends: where the middle of the strip begins and ends, shape (n, 2, 2).
     """
 
-    path: Whole
-    piece: Whole
+    path: Numbers
+    piece: Numbers
     apart: Values
     outward: Points2
     ends: Array
@@ -128,7 +125,7 @@ def _straight(paths: Sequence[ArcPath], least_mm: float) -> _Straight:
     path = np.repeat(np.arange(len(counts)), counts)
     piece = np.concatenate([np.zeros(0, dtype=np.int64), *(np.arange(count) for count in counts)])
     bulge = np.concatenate([np.zeros(0), *(one.bulges for one in paths)])
-    long = np.flatnonzero((np.abs(bulge) < STRAIGHT) & (norm(end - start) >= least_mm))
+    long = np.flatnonzero((np.abs(bulge) < FLAT_BULGE) & (norm(end - start) >= least_mm))
     return _Straight(start[long], end[long], path[long], piece[long])
 
 

@@ -35,8 +35,8 @@ def common_factor(polynomials: Iterable[Polynomial]) -> Polynomial:
     rows = [f.scaled for f in polynomials if not f.is_zero]
     if not rows:
         return ONE
-    front = min(_zeros(row) for row in rows)
-    back = min(_zeros(row[::-1]) for row in rows)
+    front = min(leading_zeros(row) for row in rows)
+    back = min(leading_zeros(row[::-1]) for row in rows)
     shared = _common([_stripped(row) for row in rows])
     return Polynomial((0,) * front + shared + (0,) * back)
 
@@ -45,7 +45,7 @@ def quotient(f: Polynomial, g: Polynomial) -> Polynomial:
     """Return f / g for g without a common divisor of its coefficients; ValueError if g is not a factor of f."""
     if f.is_zero:
         return Polynomial((0,))
-    front, back = _zeros(g.scaled), _zeros(g.scaled[::-1])
+    front, back = leading_zeros(g.scaled), leading_zeros(g.scaled[::-1])
     inner = f.scaled[front : len(f.scaled) - back]
     if sum(map(abs, f.scaled)) != sum(map(abs, inner)):
         raise ValueError("not a factor")
@@ -139,12 +139,13 @@ def sign_changes(row: Sequence[int]) -> int:
 # polynomials in t
 
 
-def _zeros(row: Sequence[int]) -> int:
+def leading_zeros(row: Sequence[int]) -> int:
+    """Return how many coefficients vanish before the first that does not: the order of the zero at that end."""
     return next(i for i, c in enumerate(row) if c)
 
 
 def _stripped(row: Sequence[int]) -> Row:
-    return tuple(row[_zeros(row) : len(row) - _zeros(row[::-1])])
+    return tuple(row[leading_zeros(row) : len(row) - leading_zeros(row[::-1])])
 
 
 def _trimmed(row: Sequence[int]) -> Row:

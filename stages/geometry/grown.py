@@ -12,7 +12,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, carrier_distance, centres, chords, curvatures, directions, sweeps
+from stages.geometry.arcpath import (
+    ArcPath,
+    carrier_distance,
+    centres,
+    chords,
+    curvatures,
+    directions,
+    joint_turns,
+    sweeps,
+)
 from stages.geometry.arrays import EPS, Mask, Points2, Values, cross2, dot, norm
 
 SMOOTH_RAD = np.radians(20.0)
@@ -53,7 +62,7 @@ def grown(path: ArcPath, shifts: Values) -> ArcPath | None:
 
     Pieces that meet smoothly move by the largest of their shifts.
     """
-    turn = _turns(path)
+    turn = joint_turns(path)
     shifts = _alike(shifts, np.abs(turn) < SMOOTH_RAD)
     curvature = curvatures(path)
     room = 1.0 + curvature * shifts
@@ -61,13 +70,6 @@ def grown(path: ArcPath, shifts: Values) -> ArcPath | None:
         return None
     vertices = _vertices(path, shifts, turn, curvature / room)
     return None if vertices is None else _between(path, vertices)
-
-
-def _turns(path: ArcPath) -> Values:
-    """Return the turn at each vertex in rad, in (-pi, pi]."""
-    first, last = directions(path)
-    wrapped: Values = np.pi - np.mod(np.pi - (first - np.roll(last, 1)), 2.0 * np.pi)
-    return wrapped
 
 
 def _alike(shifts: Values, smooth: Mask) -> Values:

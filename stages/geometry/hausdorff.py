@@ -20,6 +20,7 @@ from scipy.spatial import KDTree
 
 from stages.geometry.arcpath import ArcPath, along, distances, piece_count, radii, split, sweeps
 from stages.geometry.arrays import Array, Indices, Points2, Values, dot, norm
+from stages.geometry.overlap import QUARTER_BULGE
 from stages.geometry.sampling import Resolved, dense_points
 
 DENSITY = 0.01
@@ -27,7 +28,6 @@ HEIGHTS = 3.0
 CANDIDATES = 3
 """Tree points whose pieces are tried for each query; at a joint the two neighbours are among them."""
 
-QUARTER_BULGE = 0.41421356237309503
 LONGEST_STEP = 1.0 / 24.0
 """Lines have no height over their chord; they are sampled at this share of their length all the same."""
 

@@ -26,7 +26,7 @@ import numpy as np
 from stages.geometry.arrays import Array, ArrayValue, Values
 from stages.geometry.basis import bernstein_jet
 from stages.geometry.bernstein import Polynomial, Vector, add, cross, derivative, from_bernstein, inner, multiply
-from stages.geometry.curves import Bezier, Curve, RationalBezier, homogeneous
+from stages.geometry.curves import Bezier, Curve, RationalBezier, homogeneous, raised
 from stages.geometry.envelope import Rows, image
 from stages.geometry.factors import common_factor, divided_by, quotient, roots_inside
 from stages.geometry.series import derivatives, power, product, scaled, taylor
@@ -182,13 +182,11 @@ def _coefficients(f: Polynomial) -> list[Fraction]:
 def _table(columns: Sequence[Sequence[Fraction]]) -> Array:
     """Return Bernstein coefficients in one degree, in float64, as columns."""
     degree = max(len(column) for column in columns) - 1
-    return np.array([[float(c) for c in _raised(column, degree)] for column in columns]).T
+    return np.array([[float(c) for c in _in_degree(column, degree)] for column in columns]).T
 
 
-def _raised(coefficients: Sequence[Fraction], degree: int) -> list[Fraction]:
-    row = list(coefficients)
-    while len(row) <= degree:
-        n = len(row)
-        inside = [Fraction(i, n) * row[i - 1] + (1 - Fraction(i, n)) * row[i] for i in range(1, n)]
-        row = [row[0], *inside, row[-1]]
-    return row
+def _in_degree(coefficients: Sequence[Fraction], degree: int) -> list[Fraction]:
+    rows = [(c,) for c in coefficients]
+    while len(rows) <= degree:
+        rows = [(c,) for (c,) in raised(rows)]
+    return [c for (c,) in rows]

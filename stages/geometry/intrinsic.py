@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Array, Points2, Points3, Triples, Values, Whole
+from stages.geometry.arrays import Array, Numbers, Points2, Points3, Triples, Values
 from stages.geometry.sparsesolve import factorised
 
 
@@ -61,7 +61,7 @@ def conformal(vertices: Points3, faces: Triples, corners: Array) -> Points2:
     return np.stack([flat.real, flat.imag], axis=1)
 
 
-def _far_apart(vertices: Points3, candidates: Whole) -> tuple[int, int]:
+def _far_apart(vertices: Points3, candidates: Numbers) -> tuple[int, int]:
     """Return two vertices that lie far apart."""
     ends = [int(candidates[0])]
     for _ in range(2):

@@ -12,7 +12,8 @@ from shapely import STRtree, box
 
 from stages.geometry.arcpath import ArcPath, along, area, backwards
 from stages.geometry.arrays import Array, Mask, Numbers, Points2, Values, Vector2
-from stages.geometry.clearance import Pieces, between, boxes, distances, inside, joined, pieces, point_distances
+from stages.geometry.clearance import Pieces, between, boxes, distances, joined, pieces, point_distances
+from stages.geometry.enclosed import inside_own
 
 FREE_SHARE = 0.02
 """Of a way from its end on the contour: an arc through 90 degrees is 5e-4 of its radius from the contour by then."""
@@ -56,8 +57,8 @@ class Obstacles:
 
     def __init__(self, paths: Sequence[ArcPath]) -> None:
         some = [pieces(path) for path in paths]
-        self.some = some
-        self.hollow = [area(path) < 0.0 if path.closed else None for path in paths]
+        self.closed = np.array([path.closed for path in paths], dtype=bool)
+        self.hollow = np.array([path.closed and area(path) < 0.0 for path in paths], dtype=bool)
         self.every = joined([NOTHING, *some])
         self.owner = np.repeat(np.arange(len(some)), np.array([one.bulge.size for one in some], dtype=np.int64))
         self.tree = STRtree(box(*boxes(self.every).T))
@@ -76,18 +77,12 @@ class Obstacles:
         one, other = self._near(some, np.full(number.size, APART_MM))
         same = self.owner[other] == own[number[one]]
         left: Mask = _least(self._distances(some, one[same], other[same]), number[one[same]], len(ways)) > APART_MM
-        begins = np.array([way.vertices[0] for way in ways]).reshape(-1, 2)
-        for contour in np.unique(own).tolist():
-            mine = own == contour
-            left[mine] &= self._wasted(begins[mine], contour)
+        left &= self._wasted(np.array([way.vertices[0] for way in ways]).reshape(-1, 2), own)
         return left
 
-    def _wasted(self, points: Points2, contour: int) -> Mask:
-        """Return which points are in the waste of a contour: within a hole, which runs clockwise, or off an outline."""
-        hollow = self.hollow[contour]
-        if hollow is None:
-            return np.ones(len(points), dtype=bool)
-        wasted: Mask = inside(points, self.some[contour]) == hollow
+    def _wasted(self, points: Points2, own: Numbers) -> Mask:
+        """Return which points are in the waste of their contour: in a hole, which runs clockwise, or off an outline."""
+        wasted: Mask = (inside_own(points, own, self.every, self.owner) == self.hollow[own]) | ~self.closed[own]
         return wasted
 
     def are_free(self, ways: Sequence[ArcPath], least: float) -> Mask:

@@ -92,7 +92,7 @@ def link(a: Curve, b: Curve, w: Values, t: Values) -> Link:
         middles = middles[_clear(made, middles) & (np.diff(made.w) > SHORTEST)]
         found = _solved(made, middles)
         off = np.abs(_guess(made, middles) - found) > NEAR / 2.0
-        if not off.any():
+        if not off.any() or made.w.size > MOST_KNOTS:
             break
         w, order = np.unique(np.concatenate([made.w, middles[off]]), return_index=True)
         t = np.concatenate([made.t, found[off]])[order]
@@ -137,6 +137,8 @@ def _clear(along: Link, w: Values) -> Mask:
 
 
 ROUNDS = 8
+MOST_KNOTS = 2000
+"""An arc between lattice lines takes some hundred; where so many do not do, F is noise and no more of them would."""
 SHORTEST = 1e-6
 """Knots are not put closer than twice this: beside a point where arcs cross no cubic will do."""
 
@@ -177,6 +179,8 @@ def _expanded(along: Link, w: Values, order: int) -> Array:
     at_start = w - along.w[0] < along.w[-1] - w
     for end, knot in enumerate(along.w[[0, -1]]):
         here = ~clear & (at_start == (end == 0))
+        if not here.any():
+            continue
         series = np.polynomial.Polynomial(along.ends[end])
         for k in range(order + 1):
             found[k, here] = series(w[here] - knot)

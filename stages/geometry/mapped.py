@@ -14,7 +14,7 @@ from numpy.polynomial import chebyshev
 from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Points2, Values
 from stages.geometry.development import RulingMap
 from stages.geometry.flatmap import FlatPiece
-from stages.geometry.plane import PlaneCurve
+from stages.geometry.plane import Piecewise, PlaneCurve
 from stages.geometry.strip import locate
 
 ACROSS = 12
@@ -22,6 +22,7 @@ ACROSS = 12
 SAMPLES = 513
 """Places at which a curve is asked on which patch it is; a visit to another one between two of them is not cut."""
 BISECTIONS = 52
+"""Halvings of a stretch of 1/512, which leave nothing between two doubles of t."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,8 +77,9 @@ class MappedEdge(ArrayValue):
     @property
     def breaks(self) -> Values:
         """Where it is not smooth, ends included: at those of a curve that has them."""
-        own: Array = np.asarray(getattr(self.curve, "breaks", ()), dtype=np.float64)
-        inner = (own - self.low) / (self.high - self.low)
+        if not isinstance(self.curve, Piecewise):
+            return np.array([0.0, 1.0])
+        inner = (self.curve.breaks - self.low) / (self.high - self.low)
         within = inner[(inner > LEAST_STRETCH) & (inner < 1.0 - LEAST_STRETCH)]
         return np.concatenate([[0.0], np.sort(within), [1.0]])
 

@@ -101,3 +101,4 @@ def zeros(t: Values, bends: Values) -> Array:
 CAPPED, FLAT, BEND_DEGREE = 3.0, 0.02, 12
 """Curvatures, in medians: larger ones do not count as such; none below this means no change of sign."""
 REAL, ENDS = 1e-6, 1.0
+"""A double root splits into a pair with an imaginary part of the square root of rounding; t runs from -1 to 1."""

@@ -35,7 +35,7 @@ MOST_CROSSINGS = 10_000
 """Pairs after which the search ends: a mesh with so many is not repaired by looking at each."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Crossings:
     """Pairs of triangles that interpenetrate, how deep, mm, and whether these are all."""
 

@@ -21,7 +21,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Points2, Values, Whole, cross2, dot, norm
+from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Numbers, Points2, Values, cross2, dot, norm
 from stages.geometry.intrinsic import areas, laid
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshtopology import Edges
@@ -161,7 +161,7 @@ def _rulings(form: Array) -> list[Array]:
     return [axes[:, int(np.argmin(np.abs(values)))]]
 
 
-def _extent(flat: Points2, border: Whole, centre: Array, along: Array) -> float:
+def _extent(flat: Points2, border: Numbers, centre: Array, along: Array) -> float:
     """Return how far the line through a place runs within the nearest boundary edges on both sides, mm."""
     p, q = flat[border[:, 0]] - centre, flat[border[:, 1]] - centre
     side_p, side_q = (cross2(np.broadcast_to(along, x.shape), x) for x in (p, q))

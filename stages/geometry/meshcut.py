@@ -31,7 +31,7 @@ from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, Indices, Numbers, Points3, Values, Vector3, cross3, dot, norm, unit
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshrepair import ROUNDING
-from stages.geometry.meshtopology import CORNERS, Edges, boundary_loops, by_first, edges_of, fans, half_edges
+from stages.geometry.meshtopology import CORNERS, Edges, boundary_loops, by_first, edges_of, fans, half_edges, on_border
 
 PER_SQUARE = 0.25
 """Error of a hole's turning over the sum of the squared angles between its faces; at most 0.04 on meshed holes."""
@@ -39,7 +39,7 @@ PER_CURVATURE = 3.0
 """Curvature under a hole over the mean one times the area of the disc: 1.2 for a hole of 0.8 radii in a sphere."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Opened:
     """A mesh cut open: one end, the other loops holes.
 
@@ -183,9 +183,7 @@ def shortest(mesh: Mesh, edges: Edges, one: Numbers, other: Numbers, weight: Val
     vertex.
     """
     weight = edge_lengths(mesh, edges) if weight is None else weight
-    border = np.zeros(len(mesh.vertices), dtype=bool)
-    border[edges.ends[edges.count == 1]] = True
-    allowed = ~border
+    allowed = ~on_border(mesh, edges)
     allowed[one] = True
     allowed[other] = True
     a, b = edges.ends.T

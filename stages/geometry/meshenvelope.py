@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from stages.geometry.arrays import Array, ArrayValue, Points2, Points3, Values, cross2, dot, norm
+from stages.errors import NoSolutionError
+from stages.geometry.arrays import Array, ArrayValue, Points2, Points3, Values, cross2, diagonal, dot, norm
 from stages.geometry.curves import Curve
 from stages.geometry.development import develop
 from stages.geometry.envelope import image
@@ -128,6 +129,7 @@ def _facing(mesh: Mesh, v: Values) -> Array:
 
 
 MIDDLE, NEAR_MIDDLE = 0.5, 0.05
+"""Share of v about the middle whose facets say which way the mesh faces: a few rows of them."""
 
 
 def _patch(line: Edge, first: Array, last: Array) -> RuledPatch:
@@ -171,13 +173,21 @@ class Developed:
         return self.piece.positions(self.known[:, 0], self.known[:, 1])
 
     def places(self, points: Points2) -> Points2:
-        """Return u and v of flat points, by Newton's method from the nearest known one."""
+        """Return u and v of flat points, by Newton's method from the nearest known one.
+
+        Raises NoSolutionError where it does not come to the point.
+        """
         from scipy.spatial import KDTree
 
         at = self.known[KDTree(self.flat).query(points)[1]]
-        for _ in range(NEWTON):
-            off = points - self.piece.positions(at[:, 0], at[:, 1])
-            at = at + self._pulled(at, off)
+        with np.errstate(over="ignore", invalid="ignore"):  # what runs away is no number, and missed
+            for _ in range(NEWTON):
+                off = points - self.piece.positions(at[:, 0], at[:, 1])
+                at = at + self._pulled(at, off)
+            missed = float(norm(points - self.piece.positions(at[:, 0], at[:, 1])).max(initial=0.0))
+        wanted = MET * diagonal(self.flat)
+        if not missed <= wanted:  # also where it is no number
+            raise NoSolutionError("place of a flat point on its patch", reached=missed, wanted=wanted, unit="mm")
         return np.asarray(at)
 
     def rates(self, points: Points2, slopes: Points2) -> Points2:
@@ -196,6 +206,8 @@ class Developed:
 
 NEWTON = 4
 """Steps from a vertex beside the point: each squares the error, of a few hundredths at first."""
+MET = 1e-10
+"""Share of the pattern within which a point must be met: ten times the rounding of the development."""
 
 
 def common(patch: RuledPatch) -> tuple[str, Points3, float]:

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Points3, Values, Whole, cross3, dot, norm, unit
+from stages.geometry.arrays import Array, ArrayValue, Indices, Mask, Numbers, Points3, Values, cross3, dot, norm, unit
 from stages.geometry.mesh import Mesh
-from stages.geometry.meshtopology import Edges
+from stages.geometry.meshtopology import Edges, on_border
 
 MOST_TRIANGLES = 400_000
 """What is fitted and laid flat: 300 000 take 20 s and 1.4 GB, and 10 000 are already good for 1e-7 of the size."""
@@ -59,7 +59,7 @@ class Stars(ArrayValue):
     """
 
     rows: Indices
-    others: Whole
+    others: Numbers
     used: Array
 
 
@@ -114,8 +114,7 @@ def _links(mesh: Mesh, edges: Edges) -> csr_array:
 
 def _inside_and_at_edge(mesh: Mesh, edges: Edges) -> tuple[Mask, Mask]:
     """Return which vertices are inside and which at an edge of the mesh."""
-    at_edge = np.zeros(len(mesh.vertices), dtype=bool)
-    at_edge[edges.ends[edges.count == 1]] = True
+    at_edge = on_border(mesh, edges)
     return ~at_edge, at_edge
 
 
@@ -153,7 +152,7 @@ def fitted_at(mesh: Mesh, edges: Edges, places: Points3, beside: Indices, degree
     The normal is that at the foot of the place on the surface, as far as the quadratic fit knows where that is.
     """
     links, normals = _links(mesh, edges), _rough_normals(mesh)
-    parts, order = list[SurfaceFit](), list[Whole]()
+    parts, order = list[SurfaceFit](), list[Numbers]()
     for some, size in zip(_inside_and_at_edge(mesh, edges), SIZES[WIDE_DEGREE], strict=True):
         mine = np.flatnonzero(some[beside])
         for block in np.split(mine, range(BLOCK, len(mine), BLOCK)) if len(mine) else ():
@@ -169,7 +168,7 @@ def _with_itself(star: Stars) -> Stars:
     return Stars(star.rows, np.hstack([star.rows[:, None], star.others]), np.hstack([first, star.used]))
 
 
-def _in_order(parts: list[SurfaceFit], order: Whole) -> SurfaceFit:
+def _in_order(parts: list[SurfaceFit], order: Numbers) -> SurfaceFit:
     """Return fits of several vertices each as one, in another order."""
     names = SurfaceFit.__dataclass_fields__
     return SurfaceFit(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))

@@ -67,6 +67,10 @@ def noise(fit: SurfaceFit) -> float:
     return float(np.median(known)) if len(known) else float(np.inf)
 
 
+AT_REST = 1e-10
+"""The last step of a flattening, relative to the size of the part: a nanometre on one of 10 m."""
+
+
 def at_rest(
     mesh: Mesh, edges: Edges, lengths: Array, ties: Ties | None = None, *, kind: Kind, noise_mm: float, accuracy: float
 ) -> MeshMap:

@@ -15,7 +15,7 @@ orders in L.
 
 import numpy as np
 
-from stages.geometry.arrays import EPS, Array, Indices, Mask, Points3, Values, Whole, cross3, dot, norm, unit
+from stages.geometry.arrays import EPS, Array, Indices, Mask, Numbers, Points3, Values, cross3, dot, norm, unit
 from stages.geometry.meshfit import SurfaceFit
 
 POINTS = 6
@@ -28,12 +28,12 @@ UNEXPLAINED = 0.02
 experiment on coarse, sharp and noisy meshes from there on lengths on the fit may be worse than chords."""
 
 
-def chords(vertices: Array, ends: Whole) -> Values:
+def chords(vertices: Array, ends: Numbers) -> Values:
     """Return the straight lengths of edges, mm."""
     return norm(vertices[ends[:, 1]] - vertices[ends[:, 0]])
 
 
-def curved(vertices: Array, ends: Whole, fit: SurfaceFit) -> tuple[Values, Mask]:
+def curved(vertices: Array, ends: Numbers, fit: SurfaceFit) -> tuple[Values, Mask]:
     """Return the lengths of edges on the fitted surface, mm, and where the fit is to be believed."""
     ways = vertices[ends[:, 1]] - vertices[ends[:, 0]]
     length = norm(ways)
@@ -54,7 +54,7 @@ ROUNDINGS = 16
 """Heights of a plane differ by the rounding of their coordinates, and have no other shape."""
 
 
-def mended(lengths: Values, straight: Values, of_half: Whole) -> Values:
+def mended(lengths: Values, straight: Values, of_half: Numbers) -> Values:
     """Return the lengths with those of the chords wherever three would not make a triangle.
 
     of_half: the edge of each side of every triangle.

@@ -242,6 +242,7 @@ AT_REST = 1e-10
 """A step that moves the surface by less, as a share of the extent, and does not help is the last one: the one before
 has squared its error."""
 MOST_STEPS = 100
+"""Of a fit that begins near the surface: a few do; what is not at rest after so many is no such surface."""
 
 
 def _slopes(at: Rotational, points: Points3, x: Vector3, y: Vector3) -> Array:

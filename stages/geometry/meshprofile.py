@@ -28,6 +28,7 @@ from stages.geometry.arrays import (
     Values,
     Vector3,
     cross3,
+    diagonal,
     dot,
     norm,
     unit,
@@ -66,7 +67,7 @@ class Profile(ArrayValue):
 def allowed_mm(mesh: Mesh) -> float:
     """Return how far rounding may have moved the vertices from where they belong, mm."""
     keeps = deviation_of(mesh, np.zeros(len(mesh.vertices))).rounding_mm
-    return max(keeps, ROUNDED * float(norm(np.ptp(mesh.vertices, axis=0))))
+    return max(keeps, ROUNDED * diagonal(mesh.vertices))
 
 
 def profiled(mesh: Mesh) -> Profile | None:

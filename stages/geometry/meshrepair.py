@@ -29,7 +29,7 @@ ROUNDING = 4.0 * float(np.finfo(np.float32).eps)
 """Of the largest coordinate: float32 positions nearer than this are one."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Repair:
     """A mesh after repair.
 

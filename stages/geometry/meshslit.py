@@ -13,7 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Indices, Mask, Numbers, Points3, Values, norm
+from stages.geometry.arrays import Indices, Numbers, Points3, Values, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcut import NEAR, distance_to, edge_lengths, halves_along, parted, run_along, snapped
 from stages.geometry.meshtopology import Edges
@@ -22,7 +22,7 @@ APART = 4.0
 """Mean edges from one point of a line to the next that is gone through: nearer ones are known to no edge."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Slit:
     """A mesh with slits.
 
@@ -42,13 +42,6 @@ def slit(mesh: Mesh, edges: Edges, ways: tuple[Numbers, ...]) -> Slit:
     made, original = parted(mesh, edges, closed)
     sides = tuple((run_along(made, left), run_along(made, right)[::-1]) for left, right in halves)
     return Slit(made, sides, original)
-
-
-def on_border(mesh: Mesh, edges: Edges) -> Mask:
-    """Return whether each vertex is on the boundary."""
-    border = np.zeros(len(mesh.vertices), dtype=bool)
-    border[edges.ends[edges.count == 1]] = True
-    return border
 
 
 def followed(mesh: Mesh, edges: Edges, line: Points3) -> Numbers:

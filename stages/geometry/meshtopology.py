@@ -16,7 +16,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from stages.geometry.arrays import ArrayValue, Indices, Numbers, Pairs, Triples
+from stages.geometry.arrays import ArrayValue, Indices, Mask, Numbers, Pairs, Triples
 from stages.geometry.mesh import Mesh
 
 CORNERS = 3
@@ -156,6 +156,13 @@ def pinched(mesh: Mesh, edges: Edges) -> Indices:
     _, labels = fans(mesh, edges)
     _, first = np.unique(labels, return_index=True)
     return np.flatnonzero(np.bincount(start[first], minlength=len(mesh.vertices)) > 1)
+
+
+def on_border(mesh: Mesh, edges: Edges) -> Mask:
+    """Return whether each vertex is on the boundary."""
+    border = np.zeros(len(mesh.vertices), dtype=bool)
+    border[edges.ends[edges.count == 1]] = True
+    return border
 
 
 def boundary_loops(mesh: Mesh, edges: Edges) -> tuple[Numbers, ...]:

@@ -13,13 +13,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stages.geometry.arrays import Array, Mask
+from stages.geometry.arrays import Array, Mask, Numbers
 from stages.geometry.elements import Degrees
-
-Numbers = NDArray[np.int64]
-"""An array of whole numbers whose shape the docstring gives."""
 
 HELD = -1
 """In place of an unknown's number: the node does not move that way."""

@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry import clearance
+from stages.geometry import clearance, enclosed
 from stages.geometry.arcpath import ArcPath, area, joint_turns
 from stages.geometry.arrays import Mask, Numbers, norm
 from stages.geometry.grown import grown
@@ -101,6 +101,6 @@ def beyond(edges: Sequence[Resolved], path: ArcPath, *, accuracy: float) -> floa
     """Return how far the edges reach to the right of a closed path, mm, at points as dense as `accuracy` asks."""
     points = np.concatenate([dense_points(edge, accuracy=DENSITY * accuracy) for edge in edges])
     pieces = clearance.pieces(path)
-    within = np.concatenate([clearance.inside(points[k : k + CHUNK], pieces) for k in range(0, len(points), CHUNK)])
+    within = np.concatenate([enclosed.inside(points[k : k + CHUNK], pieces) for k in range(0, len(points), CHUNK)])
     right = points[within != (area(path) > 0.0)]
     return float(nearest(right, path, accuracy=accuracy).max()) if right.size else 0.0

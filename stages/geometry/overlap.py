@@ -16,6 +16,7 @@ from stages.geometry.arcpath import ArcPath, along, chords, curvatures, distance
 from stages.geometry.arrays import Array, Indices, Points2, Values, norm
 
 QUARTER_BULGE = 0.41421356237309503
+"""tan(pi / 8): longer arcs are divided into pieces of a quarter turn at most, none of which bends back on itself."""
 INNER = (0.25, 0.5, 0.75)
 """Where an interval is tested, as shares of it."""
 

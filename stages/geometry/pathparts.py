@@ -7,27 +7,26 @@ piece, into the next round.
 import numpy as np
 
 from stages.geometry.arcpath import ArcPath, along, directions, lengths, piece_count, sweeps
-from stages.geometry.arrays import Values, Vector2
+from stages.geometry.arrays import Points2, Values
 
 
 def part(path: ArcPath, leave: float, enter: float) -> ArcPath:
     """Return the open path from one place on a closed one to a later one."""
     places = np.concatenate([[leave], np.arange(np.floor(leave) + 1.0, np.ceil(enter)), [enter]])
     piece = np.floor(places[:-1]).astype(np.int64)
-    share = np.diff(places)
-    points = np.stack([point_at(path, place) for place in places.tolist()])
-    bulges = np.tan(sweeps(path)[piece % path.bulges.size] * share / 4.0)
-    return ArcPath(points, np.append(bulges, 0.0), closed=False)
+    bulges = np.tan(sweeps(path)[piece % path.bulges.size] * np.diff(places) / 4.0)
+    return ArcPath(points_at(path, places), np.append(bulges, 0.0), closed=False)
 
 
-def point_at(path: ArcPath, place: float) -> Vector2:
-    """Return the point at a place; a vertex as it is."""
-    piece = int(np.floor(place))
-    found = path.vertices[piece % path.bulges.size]
-    if place != piece:
-        found = along(path, np.array([piece % path.bulges.size]), np.array([place - piece]))[0]
-    point: Vector2 = found
-    return point
+def points_at(path: ArcPath, places: Values) -> Points2:
+    """Return the points at places; vertices as they are."""
+    piece = np.floor(places).astype(np.int64)
+    number, share = piece % path.bulges.size, places - piece
+    found: Points2 = path.vertices[number]
+    between = share != 0.0
+    if between.any():
+        found[between] = along(path, number[between], share[between])
+    return found
 
 
 def direction_at(path: ArcPath, place: float) -> float:
@@ -39,27 +38,25 @@ def direction_at(path: ArcPath, place: float) -> float:
 
 def place_at(path: ArcPath, distance: float) -> float:
     """Return the place at a distance along a closed path from its first vertex, mm; it may run round more than once."""
-    ends = _ends(path)
-    rounds, rest = divmod(distance, float(ends[-1]))
-    piece = min(int(np.searchsorted(ends, rest, side="right")) - 1, path.bulges.size - 1)
-    share = (rest - float(ends[piece])) / float(ends[piece + 1] - ends[piece])
-    return rounds * path.bulges.size + piece + share
+    return float(places_at(path, np.array([distance]))[0])
 
 
-def _ends(path: ArcPath) -> Values:
-    """Return how far each vertex is from the first, and the first from itself, once round, in mm."""
-    ends: Values = np.concatenate([[0.0], np.cumsum(lengths(path))])
-    return ends
+def places_at(path: ArcPath, distances: Values) -> Values:
+    """Return the places at distances along a closed path from its first vertex, mm."""
+    ends = np.concatenate([[0.0], np.cumsum(lengths(path))])
+    rounds, rest = np.divmod(distances, ends[-1])
+    piece = np.minimum(np.searchsorted(ends, rest, side="right") - 1, path.bulges.size - 1)
+    share = (rest - ends[piece]) / (ends[piece + 1] - ends[piece])
+    places: Values = rounds * path.bulges.size + piece + share
+    return places
 
 
-def settled(path: ArcPath, place: float, least: float) -> float:
-    """Return a place at which a path may be cut: the vertex where a piece shorter than `least` mm would be left."""
-    piece = np.floor(place)
-    share = place - piece
-    long = float(lengths(path)[int(piece) % piece_count(path)])
-    if share * long < least:
-        return float(piece)
-    return float(piece + 1.0) if (1.0 - share) * long < least else place
+def settled(path: ArcPath, places: Values, least: float) -> Values:
+    """Return places at which a path may be cut: vertices where a piece shorter than `least` mm would be left."""
+    piece = np.floor(places)
+    share, long = places - piece, lengths(path)[piece.astype(np.int64) % piece_count(path)]
+    late: Values = np.where((1.0 - share) * long < least, piece + 1.0, places)
+    return np.where(share * long < least, piece, late)
 
 
 def begun(path: ArcPath, place: float) -> ArcPath:

@@ -25,6 +25,16 @@ class PlaneCurve(Protocol):
         ...
 
 
+@runtime_checkable
+class Piecewise(PlaneCurve, Protocol):
+    """A curve that is smooth to some order only at its breaks, which are values of t from 0 to 1."""
+
+    @property
+    def breaks(self) -> Values:
+        """Where it is not smooth."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Segment(ArrayValue):
     """A straight edge from `start` to `end`."""

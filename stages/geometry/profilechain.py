@@ -13,7 +13,19 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.geometry.arrays import Array, ArrayValue, Matrix, Numbers, Points2, Points3, Values, Vector2, cross2, norm
+from stages.geometry.arrays import (
+    Array,
+    ArrayValue,
+    Matrix,
+    Numbers,
+    Points2,
+    Points3,
+    Values,
+    Vector2,
+    cross2,
+    diagonal,
+    norm,
+)
 
 Flags = NDArray[np.bool_]
 
@@ -118,7 +130,7 @@ class Fitted(ArrayValue):
 def fitted(points: Points3, leg_of: Numbers, start: Fitted) -> Fitted:
     """Return the chain nearest to points in space of which the legs are known, its ends beside the outermost points."""
     found, off = start, _off(start, points, leg_of)
-    size = float(norm(np.ptp(points, axis=0)))
+    size = diagonal(points)
     for _ in range(MOST_STEPS):
         scale = _scales(found, size)
         slopes = np.column_stack(

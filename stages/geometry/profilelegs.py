@@ -147,7 +147,8 @@ def direction(points: Points2, stretch: Stretch, end: int) -> Vector2:
     if stretch.radius == 0.0:
         return np.asarray(unit(run[-1] - run[0]))
     centre = _centre(run)
-    assert centre is not None
+    if centre is None:
+        raise ValueError("the points of an arc have a centre")
     arrow = unit(run[end] - centre) * np.sign(stretch.radius)
     return np.array([-arrow[1], arrow[0]])
 

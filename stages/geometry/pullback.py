@@ -104,6 +104,7 @@ def _speed_bound(strip: Strip, low: Values, high: Values) -> Values:
 
 
 INSIDE = 1e-3
+"""Of an interval; what its very ends do beyond that is in the margin of the bound."""
 
 
 def _four(strip: Strip, v: Values) -> tuple[Points3, Points3, Points3, Points3]:

@@ -21,7 +21,7 @@ ROUNDING = 8 * 4e-15
 """A Legendre coefficient below this share of the scale is noise: 16 products of doubles, summed with both signs."""
 DEPTH = 40
 """A panel is halved at most so often: 2**-40 of the whole, where any integrable singularity has lost its weight."""
-MOST_PANELS = 4096
+MOST_PANELS = 1024
 """So many panels at once are noise, not a function: an end singularity takes 2 per halving, a hard patch some 100."""
 
 NODES, WEIGHTS = legendre.leggauss(ORDER)
@@ -114,6 +114,13 @@ def _in_order(done: list[tuple[Array, Array]]) -> tuple[Array, Array]:
 
 SMALL_PANEL = 2.0**12
 """Below 1/4096 of the interval a panel counts only by its share: that is how a square-root end is resolved."""
+
+
+def beginnings(series: Array, start: Array) -> Array:
+    """Return where each panel begins, (m, c): where the one before ends; from series (m, 17, c) and the start (c,)."""
+    ends = series.sum(axis=1)
+    begun: Array = np.concatenate([np.zeros((1, ends.shape[1])), np.cumsum(ends, axis=0)[:-1]]) + start
+    return begun
 
 
 def integral(sample: Callable[[Values], Array], subject: str) -> Array:

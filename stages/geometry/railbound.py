@@ -40,7 +40,7 @@ class Bound:
     s: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Costs:
     """Lower bounds of folds in each cell, rad, shape (n, m).
 
@@ -120,7 +120,7 @@ def _with_ends(lines: Array) -> Array:
     return np.concatenate([lines[:1], lines, lines[-1:]])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Intervals:
     """The intervals between lattice lines of a rail: the lines that bound each, and whether it lies inside a piece."""
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from stages.geometry.arrays import Values, norm
+from stages.geometry.arrays import Values, diagonal, norm
 from stages.geometry.curves import Curve
 from stages.geometry.railcrossing import crossing
 from stages.geometry.railzero import Field, Place, Zero, Zeros, mismatch_at
@@ -42,7 +42,7 @@ def from_shared_ends(found: Field, every: Zeros) -> list[Chord]:
     made: list[Chord] = []
     for (i, j), (k, h) in (((0, 0), (0, 0)), ((n - 1, m - 1), (n - 2, m - 2))):
         gap = float(norm(found.a.point[i] - found.b.point[j]))
-        if gap <= SHARED * float(norm(np.ptp(found.a.point, axis=0))):
+        if gap <= SHARED * diagonal(found.a.point):
             end: Place = ("corner", i, j)
             sides: list[Place] = [("column", k, h), ("row", k, h)] if i else [("column", k + 1, h), ("row", k, h + 1)]
             made += [(place, end) if i else (end, place) for place in sides if place in every and every[place].open]

@@ -165,6 +165,7 @@ def linked(knots: Array, rail_a: Rail, rail_b: Rail) -> Link:
 
 
 MIDDLE = 0.5
+"""Of a piece, which is 1 long."""
 
 
 def _without(parts: tuple[Leg, ...], k: int) -> tuple[Leg, ...]:

@@ -233,7 +233,8 @@ def _off_chords(edge: PlaneCurve, points: Points2) -> float:
         middle = edge.at((edge.breaks[1:] + edge.breaks[:-1]) / 2.0)
         chord = np.diff(points, axis=0)
         return float(np.abs(cross2(chord, middle - points[:-1]) / norm(chord)).max())
-    assert isinstance(edge, CircularArc)
+    if not isinstance(edge, CircularArc):
+        raise TypeError(f"no sagitta of a {type(edge).__name__}")
     half = norm(np.diff(points, axis=0)).max() / 2.0
     return float(edge.radius - np.sqrt(max(edge.radius**2 - half**2, 0.0)))
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from stages.geometry import strainenergy
-from stages.geometry.arrays import Array, ArrayValue, Points2, Values
+from stages.geometry.arrays import Array, ArrayValue, Points2, Values, similarities
 from stages.geometry.development import RulingMap
 from stages.geometry.elements import evaluate
 from stages.geometry.ruled import RuledPatch
@@ -86,9 +86,9 @@ def principal(piece: RelaxedMap, u: Values, v: Values) -> Points2:
     d_e = d_u / length[:, None]
     d_w = (d_v - at.along[:, None] * d_e) / aside[:, None]
     c, s = at.cos, at.sin
-    e = (1.0 + c * d_e[:, 0] + s * d_e[:, 1], c * d_e[:, 1] - s * d_e[:, 0])
-    w = (c * d_w[:, 0] + s * d_w[:, 1], 1.0 - at.kappa + c * d_w[:, 1] - s * d_w[:, 0])
-    similar, mirrored = np.hypot(e[0] + w[1], e[1] - w[0]) / 2.0, np.hypot(e[0] - w[1], e[1] + w[0]) / 2.0
+    e = np.stack([1.0 + c * d_e[:, 0] + s * d_e[:, 1], c * d_e[:, 1] - s * d_e[:, 0]], axis=1)
+    w = np.stack([c * d_w[:, 0] + s * d_w[:, 1], 1.0 - at.kappa + c * d_w[:, 1] - s * d_w[:, 0]], axis=1)
+    similar, mirrored = similarities(e, w)
     strains = np.stack([similar + mirrored - 1.0, similar - mirrored - 1.0], axis=1)
     return np.where(clear[:, None], strains, 0.0)
 

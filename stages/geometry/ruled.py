@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from stages.geometry.arrays import EPS, Array, ArrayValue, Points3, Values, cross3, dot, norm, unit
+from stages.geometry.arrays import EPS, ArrayValue, Points3, Values, cross3, diagonal, dot, norm, unit
 from stages.geometry.curves import Bezier, Curve, RationalBezier, difference, restrict
 
 
@@ -208,9 +208,9 @@ def regression(f: Frames) -> Values:
 def size_of(patches: Sequence[RuledPatch]) -> float:
     """Return the diagonal of the bounding box of the directrices, mm (sampled at 65 points of each)."""
     v = np.linspace(0.0, 1.0, 65)
-    return box(np.concatenate([at(patch, np.full_like(v, u), v) for patch in patches for u in (0.0, 1.0)]))
+    return diagonal(np.concatenate([at(patch, np.full_like(v, u), v) for patch in patches for u in (0.0, 1.0)]))
 
 
-def box(points: Array) -> float:
-    """Return the diagonal of the bounding box of points, mm."""
-    return float(norm(points.max(axis=0) - points.min(axis=0)))
+def longest_ruling(patch: RuledPatch) -> float:
+    """Return the length of the longest of three rulings, mm: a scale that no end may take away."""
+    return float(norm(patch.p.jet(np.array([0.0, 0.5, 1.0]), 0)[0]).max())

@@ -43,6 +43,7 @@ NEARBY = (1e-7, 1e-5, 1e-3)
 """How far inside to look, in t, for the direction at an end where the derivative vanishes or is infinite."""
 
 COARSE_NODES, FINE_NODES = 7, 10
+"""Gauss nodes to an interval: what three more change tells how exact both are."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,6 +97,7 @@ def dense_points(known: Resolved, *, accuracy: float) -> Points2:
 
 
 MOST_POINTS = 2_000_000
+"""Some 100 MB: an edge that asks for more has no length that can be measured."""
 
 
 def length_and_area(edges: Sequence[Resolved], *, accuracy: float) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Points3, Values, norm
+from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Points3, Values, diagonal
 from stages.geometry.ruled import RuledPatch
 
 
@@ -76,10 +76,11 @@ def size(strip: Strip) -> float:
     v = np.concatenate([np.linspace(a, b, PER_PATCH) for a, b in zip(strip.knots[:-1], strip.knots[1:], strict=True)])
     c0, p = rulings(strip, v)
     every: Array = np.concatenate([c0, c0 + p])
-    return float(norm(np.ptp(every, axis=0)))
+    return diagonal(every)
 
 
 PER_PATCH = 33
+"""Rulings whose ends make the box of a patch: a circle's misses its size by 0.5 %."""
 
 
 def divided(matrices: Array, right: Points2) -> Points2:

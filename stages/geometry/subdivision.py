@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arrays import Array, Values, norm
+from stages.geometry.arrays import Array, Values, diagonal, norm
 from stages.geometry.development import NO_LENGTH, RulingMap, angle, develop
 from stages.geometry.numbering import Shape
 from stages.geometry.ruled import RuledPatch
@@ -37,7 +37,7 @@ def divided(patches: tuple[RuledPatch, ...]) -> Strip:
     """Return the strip with its coarsest elements.  Raises NoSolutionError where it does not unroll."""
     bases = tuple(piece for piece in develop(patches).pieces if isinstance(piece, RulingMap))
     flat = np.concatenate([base.positions(np.full_like(PLACES, u), PLACES) for base in bases for u in (0.0, 1.0)])
-    size = float(norm(np.ptp(flat, axis=0)))
+    size = diagonal(flat)
     short = [norm(patch.p.jet(np.array([0.0, 1.0]), 0)[0]) <= NO_LENGTH * size for patch in patches]
     pointed = (*(bool(ends[0]) for ends in short), bool(short[-1][1]))
     apex0, apex1 = (tuple(_is_point(patch, side, size) for patch in patches) for side in (0, 1))

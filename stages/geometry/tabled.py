@@ -25,8 +25,8 @@ ROUNDING = 2e-14
 """What the last coefficients may be, as a share of the largest place on the curve (at least 1)."""
 LAST = 3
 """Coefficients that must be rounding: an even or odd curve has every other one 0."""
-FIRST_PANELS, MOST_PANELS = 4, 128
-MOST_HALVINGS = 8
+FIRST_PANELS, MOST_PANELS, MOST_HALVINGS = 4, 128, 8
+"""Panels to begin with, and at most; a curve that would take more, or more halvings, is evaluated itself instead."""
 
 POINTS = chebyshev.chebpts1(NODES)
 TO_SERIES = np.linalg.inv(chebyshev.chebvander(POINTS, NODES - 1))

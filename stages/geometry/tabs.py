@@ -14,7 +14,7 @@ import numpy as np
 from stages.geometry.arcpath import ArcPath, distances, joint_turns, lengths, split, sweeps
 from stages.geometry.arrays import Array, Points2, Values
 from stages.geometry.overlap import QUARTER_BULGE, fractions_beside
-from stages.geometry.pathparts import part, place_at
+from stages.geometry.pathparts import part, places_at
 
 PHASES = 16
 CORNER_RAD = np.radians(5.0)
@@ -64,11 +64,10 @@ def opened(path: ArcPath, found: Gaps, gap_mm: float) -> list[ArcPath]:
     if not found.middles:
         return [path]
     long = float(lengths(path).sum())
-    middles = sorted(found.middles)
-    ends = zip([middles[-1] - long, *middles[:-1]], middles, strict=True)
-    return [
-        part(path, place_at(path, leave + gap_mm / 2.0), place_at(path, enter - gap_mm / 2.0)) for leave, enter in ends
-    ]
+    enter = np.sort(np.array(found.middles))
+    leave = np.concatenate([[enter[-1] - long], enter[:-1]])
+    ends = places_at(path, np.concatenate([leave + gap_mm / 2.0, enter - gap_mm / 2.0])).reshape(2, -1)
+    return [part(path, *pair) for pair in zip(*ends.tolist(), strict=True)]
 
 
 def _spans(path: ArcPath, wish: Wish, avoid: Points2) -> list[Span]:

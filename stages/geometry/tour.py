@@ -29,11 +29,6 @@ def short_tour(cost: Matrix) -> Numbers:
     return improved(nearest_first(cost), cost)
 
 
-def tour_cost(order: Numbers, cost: Matrix) -> float:
-    """Return what a way costs, back to its first place included."""
-    return float(cost[order, np.roll(order, -1)].sum())
-
-
 def nearest_first(cost: Matrix) -> Numbers:
     """Return the way that always goes on to the nearest place left, the first listed of equals."""
     order = np.zeros(cost.shape[0], dtype=np.int64)

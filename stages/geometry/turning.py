@@ -14,6 +14,7 @@ Places are counted over the patches: patch i is [i, i + 1].  Not for surfaces wh
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import ceil, radians
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -113,8 +114,7 @@ def _integrated(patch: RuledPatch, piece: int) -> PatchTurning:
     breaks, values = quadrature.panels(lambda v: rates(patch, normal, v) * to_length, f"bending of piece {piece}")
     half = np.diff(breaks)[:, None, None] / 2.0
     series = half * np.einsum("lk,pkc->plc", ANTIDERIVATIVE, quadrature.coefficients(values / to_length))
-    ends_of_panels = series.sum(axis=1)
-    series[:, 0] += np.concatenate([np.zeros((1, 3)), np.cumsum(ends_of_panels, axis=0)[:-1]])
+    series[:, 0] += quadrature.beginnings(series, np.zeros(3))
     return PatchTurning(patch, normal, breaks, values / to_length, series)
 
 
@@ -219,12 +219,12 @@ def _solved(angle: Angle, low: Values, high: Values, signs: Values, left: Values
     """Return where the angle has grown by signs * left since low: Newton's method, every third step a halving."""
     goals = angle(low)[0] + signs * left
     place = (low + high) / 2.0
-    for k in range(3 * HALVINGS):
+    for k in range(BISECTED * HALVINGS):
         value, slope = angle(place)
         short = signs * (value - goals) < 0.0
         low, high = np.where(short, place, low), np.where(short, high, place)
         newton = place - np.divide(value - goals, slope, out=np.full_like(slope, np.inf), where=slope != 0.0)
-        inside = (newton >= low) & (newton <= high) & (k % 3 < THIRD)
+        inside = (newton >= low) & (newton <= high) & (k % BISECTED < BISECTED - 1)
         reached = np.abs(value - goals) <= 2.0 * EPS * (1.0 + np.abs(goals))
         following = np.where(reached, place, np.where(inside, newton, (low + high) / 2.0))
         close = np.abs(following - place) <= 2.0 * EPS * (1.0 + np.abs(place))
@@ -237,7 +237,8 @@ def _solved(angle: Angle, low: Values, high: Values, signs: Values, left: Values
 
 HALVINGS = 54
 """The interval [0, 1] halved so often is as wide as the rounding of v: enough whatever Newton's steps did."""
-THIRD = 2
+BISECTED = 3
+"""Every so many steps the interval is halved whatever Newton's method says: so it ends, however flat the angle."""
 
 
 def _angles(bends: Turning, pieces: Indices) -> Angle:
@@ -255,6 +256,15 @@ def _angles(bends: Turning, pieces: Indices) -> Angle:
         return np.einsum("nk,nk->n", basis, series[index]), np.einsum("nk,nk->n", basis[:, :-1], slopes[index])
 
     return angle
+
+
+def equal_turns(total_rad: float, most_deg: float) -> int:
+    """Return into how many equal turns a total is divided so that none exceeds the most."""
+    return max(ceil(total_rad / radians(most_deg) * (1.0 - SUMMED)), 1)
+
+
+SUMMED = 1e-9
+"""What a sum of turns may be over a whole number of them by rounding alone, as a share."""
 
 
 def turning_places(bends: Turning, count: int, steps: int) -> Values:

@@ -13,7 +13,7 @@ from msgspec import Meta, Struct, field
 from msgspec.structs import replace
 
 from stages.model.caps import LARGEST_MM, MOST_PIECES, MOST_POINTS
-from stages.model.scalars import Angle, Coordinate, Direction, Length, Number, coordinate, is_zero
+from stages.model.scalars import FULL_TURN, Angle, Coordinate, Direction, Length, Number, coordinate, is_zero
 
 PlanePoint = Annotated[tuple[Coordinate, ...], Meta(min_length=2, max_length=3)]
 """Two or three coordinates; two only on flat parts and stock, and as u and v of a place on a surface."""
@@ -108,9 +108,6 @@ class ArcSpec(CircleSpec, frozen=True, kw_only=True):
             yield Trouble("end", f"a sweep of {float(self.end - self.start):g} deg", "at most 360 deg")
 
 
-FULL_TURN = 360
-
-
 class EllipseSpec(Table, frozen=True, kw_only=True):
     """A full ellipse by its two semi-axes as vectors."""
 
@@ -142,8 +139,9 @@ class HelixSpec(Table, frozen=True, kw_only=True):
             yield Trouble("turns", f"{float(self.turns):g}", f"at most {MOST_TURNS} turns")
 
 
-MOST_TURNS = 50
-"""A blank of one turn overlaps itself; twenty take some ten seconds, and their cost grows faster than their number."""
+MOST_TURNS = 30
+"""A blank of one turn lies on itself in the flat, as a rule; how far is counted in a second for thirty, and in the cube
+of that for more."""
 
 
 class CurveSpec(Table, frozen=True, kw_only=True, omit_defaults=True):

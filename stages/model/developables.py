@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from msgspec import Meta, field
 
 from stages.model.curves import CurveSpec, Table, Trouble, not_positive, plane_curves
-from stages.model.scalars import Angle, Direction, Length, Number, Point, is_zero
+from stages.model.scalars import RIGHT_ANGLE, Angle, Direction, Length, Number, Point, is_zero
 
 
 class BezierPair(Table, frozen=True, kw_only=True, tag_field="kind", tag="bezier-pair"):
@@ -80,7 +80,3 @@ class Slope(Table, frozen=True, kw_only=True, tag_field="kind", tag="slope"):
             yield Trouble("angle", f"{float(self.angle):g} deg", "from -90 to 90 deg; the other side is `side`")
         if self.normal is not None and is_zero(self.normal):
             yield Trouble("normal", "the vector has length 0", "give the direction across the plane")
-
-
-RIGHT_ANGLE = 90
-"""Of the rulings to the plane, deg: they are its perpendiculars."""

@@ -3,17 +3,14 @@
 The names of the fields are those of the job file.  An elbow is a set: several blanks that are welded together.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from msgspec import Meta, field
 
 from stages.model.curves import Table, Trouble, not_positive
-from stages.model.scalars import Angle, Length
-
-RIGHT_ANGLE = 90
-HALF_TURN = 180
+from stages.model.scalars import HALF_TURN, RIGHT_ANGLE, Angle, Length
 
 
 class Transition(Table, frozen=True, kw_only=True, tag_field="kind", tag="transition"):
@@ -120,4 +117,23 @@ class MainOpening(Table, frozen=True, kw_only=True, tag_field="kind", tag="main-
 
 def is_set(surface: Table) -> bool:
     """Return whether a surface takes several blanks, `<part>.<n>`."""
-    return isinstance(surface, Elbow) or (isinstance(surface, Tee) and surface.hole)
+    return blank_count(surface) > 1
+
+
+def blank_count(surface: Table) -> int:
+    """Return how many blanks the surface of a set takes, by what the job file says; 1 of any other."""
+    if isinstance(surface, Elbow):
+        return surface.gores
+    return 2 if isinstance(surface, Tee) and surface.hole else 1
+
+
+def set_troubles(surface: Table, given: Collection[str], *, matched: bool) -> Iterator[Trouble]:
+    """Yield what of a part is not said of the blanks that its surface takes.
+
+    given: keys of what lies somewhere on one of them.  matched: whether holes or notches along their edges must meet.
+    """
+    for key in given if is_set(surface) else ():
+        yield Trouble(key, "which of the blanks is meant is not said", "give that blank as a part of its own")
+    if matched and isinstance(surface, Elbow) and surface.seam == "staggered":
+        message = "edges of staggered gores begin half a turn apart: their holes and notches would not meet"
+        yield Trouble("surface.seam", message, 'seam = "throat" or "heel"')

@@ -4,7 +4,7 @@ One class per kind of surface; `SurfaceSpec` is their union, told apart by the k
 those of the job file.  The paper's patches are in `stages.model.quintics`.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 from typing import Annotated, Literal, get_args
 
@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from stages.model.caps import MOST_ANGLES, MOST_FEATURES, MOST_PIECES
 from stages.model.curves import CurveSpec, Table, Trouble, absurd_lengths, plane_curves
 from stages.model.developables import BezierPair, Slope, Tangent
-from stages.model.ducts import Elbow, Saddle, Tee, Transition, is_set
+from stages.model.ducts import Elbow, Saddle, Tee, Transition, blank_count, set_troubles
 from stages.model.envelopes import Ribbon, Strap
 from stages.model.face import Face
 from stages.model.faces import FaceFile
@@ -25,7 +25,7 @@ from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, Q
 from stages.model.quinticstrip import QuinticStrip
 from stages.model.rails import Rails
 from stages.model.scalars import Angle, Direction, Length, Number, Point, is_zero
-from stages.model.sewing import Edge, SeamSpec, StitchSpec, seam_troubles
+from stages.model.sewing import EDGES, Edge, SeamSpec, StitchSpec, blank_troubles, seam_troubles, seams_on
 from stages.model.sheet import Quality
 
 
@@ -229,9 +229,8 @@ class PartSpec(Table, frozen=True, kw_only=True):
     def troubles(self) -> Iterator[Trouble]:
         """Yield what holes, marks and notches break on this kind of surface."""
         yield from absurd_lengths(self.surface)
-        ground = _ground(self.surface)
-        yield from feature_troubles(self.hole, self.mark, self.notch, on=ground)
-        yield from seam_troubles(self.seam, self.stitch, self.notch, sides=_sides(ground))
+        yield from feature_troubles(self.hole, self.mark, self.notch, on=GROUNDS.get(type(self.surface), "strip"))
+        yield from seam_troubles(self.seam, self.stitch, self.notch, sides=_sides(self.surface))
         yield from self._laying_troubles()
         if self.cut == "auto" and isinstance(self.surface, Flat):
             yield Trouble("cut", "a plate has no rulings to be divided along", 'leave it out, or write "none"')
@@ -242,12 +241,12 @@ class PartSpec(Table, frozen=True, kw_only=True):
         if len(self.bend) > 1:
             yield Trouble("bend[1]", "a second set of bend lines", "a part is bent in one way: leave one of them out")
         if self.seam and self.cut == "auto":
-            yield Trouble(
-                "cut", "a part with seams is not divided: which blank they belong to is not said", "leave it out"
-            )
-        for key in ("hole", "mark", "notch", "seam") if is_set(self.surface) else ():
-            if getattr(self, key):
-                yield Trouble(key, "which of the blanks is meant is not said", "give that blank as a part of its own")
+            hint = "leave it out, and sew it from parts that lie flat in one piece"
+            yield Trouble("cut", "a part with seams is not divided: which blank has how much of one is not said", hint)
+        edged = any(notch.edge is not None for notch in self.notch)
+        given = [key for key, there in (("hole", self.hole), ("mark", self.mark), ("notch", edged)) if there]
+        yield from set_troubles(self.surface, given, matched=bool(self.stitch or self.notch))
+        yield from blank_troubles(self.name, blank_count(self.surface), self.seam)
 
     def _laying_troubles(self) -> Iterator[Trouble]:
         """Yield what is wrong with the way it is to lie on the stock."""
@@ -272,25 +271,25 @@ class PartSpec(Table, frozen=True, kw_only=True):
         """Whether anything is cut into it, drawn on it or sewn to it."""
         return bool(self.hole or self.mark or self.notch or self.seam)
 
-    def blank(self, number: int) -> "PartSpec":
-        """Return the specification of one piece of the divided part, `<part>.<n>`."""
-        return replace(self, name=f"{self.name}.{number}", cut="none")
+    def blank(self, number: int, edges: Collection[str] = EDGES) -> "PartSpec":
+        """Return the specification of one piece of the part, `<part>.<n>`: its seams are those on these edges."""
+        name = f"{self.name}.{number}"
+        seams = seams_on(self.seam, number, edges, (self.name, name))
+        sewn = {seam.called for seam in seams}
+        rows = tuple(row for row in self.stitch if row.seam in sewn)
+        notches = tuple(notch for notch in self.notch if notch.seam is None or notch.seam in sewn)
+        return replace(self, name=name, cut="none", seam=seams, stitch=rows, notch=notches)
 
 
-def _sides(ground: Ground) -> tuple[Edge, ...]:
-    """Return the edges that a part on that ground may have; a face may be a strip with four, or trimmed."""
-    if ground == "face":
-        return get_args(Edge)
-    return ("c0", "c1", "start", "end") if ground == "strip" else ("outline",)
-
-
-def _ground(surface: SurfaceSpec) -> Ground:
-    """Return what the features of a part are put on."""
+def _sides(surface: SurfaceSpec) -> tuple[Edge, ...]:
+    """Return the edges that a part may have; a face may be a strip with four, or trimmed."""
     match surface:
-        case Flat():
-            return "plate"
-        case MeshFile():
-            return "mesh"
-        case FaceFile():
-            return "face"
-    return "strip"
+        case FaceFile() | Tee(hole=True):
+            return EDGES
+        case Flat() | MeshFile():
+            return ("outline",)
+    return ("c0", "c1", "start", "end")
+
+
+GROUNDS: dict[type[Table], Ground] = {Flat: "plate", MeshFile: "mesh", FaceFile: "face"}
+"""What the features of a part are put on, where that is no strip."""

@@ -6,9 +6,7 @@ from typing import Literal
 from msgspec import field
 
 from stages.model.curves import CurveSpec, PlanePoint, Table, Trouble, negatives, plane_curves
-from stages.model.scalars import Angle, Length
-
-FULL_TURN = 360
+from stages.model.scalars import FULL_TURN, Angle, Length
 
 
 class Rails(Table, frozen=True, kw_only=True, tag_field="kind", tag="rails"):

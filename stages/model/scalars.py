@@ -75,6 +75,10 @@ Direction = tuple[Number, Number, Number]
 """A vector without unit."""
 
 
+RIGHT_ANGLE, HALF_TURN, FULL_TURN = 90, 180, 360
+"""Angles in degrees, whole and so exact."""
+
+
 def floats(values: Iterable[Fraction]) -> Array:
     """Return the values as float64, each rounded once, shape (n,)."""
     return np.array([float(value) for value in values])

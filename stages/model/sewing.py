@@ -4,16 +4,18 @@ A seam is an edge of the flat pattern, or a stretch of it.  What it is sewn to i
 the job.  The pattern stays the sew line; what is cut lies outside it by the allowance.
 """
 
-from collections.abc import Iterator, Sequence
-from typing import Annotated, Literal
+from collections.abc import Collection, Iterator, Sequence
+from typing import Annotated, Literal, get_args
 
 from msgspec import Meta, field
+from msgspec.structs import replace
 
 from stages.model.curves import Table, Trouble, negatives, not_positive
 from stages.model.features import NotchSpec
 from stages.model.scalars import Angle, Length
 
 Edge = Literal["c0", "c1", "start", "end", "outline"]
+EDGES: tuple[Edge, ...] = get_args(Edge)
 SeamName = Annotated[str, Meta(max_length=80, pattern="^[^.]*$")]
 
 
@@ -26,6 +28,8 @@ class SeamSpec(Table, frozen=True, kw_only=True):
     mate: what it is sewn to, `part.seam`, where a seam goes by its name, without one by its edge; one that is cut more
         than once may be the mate of several.  reverse: the two run opposite ways.  max_difference: by how much their
         lengths may differ; absent: by what the accepted class of the job may be strained, `tolerance.join` at least.
+    blank: on which blank of an elbow or a tee; absent: on each that has the edge.  There a mate is `part.n.seam`; one
+        of the part itself is on the same blank, and gores that follow each other are mates without being told so.
     """
 
     edge: Edge
@@ -37,6 +41,7 @@ class SeamSpec(Table, frozen=True, kw_only=True):
     reverse: bool = False
     max_difference: Length | None = None
     name: SeamName = ""
+    blank: Annotated[int, Meta(ge=1)] | None = None
 
     @property
     def called(self) -> str:
@@ -135,10 +140,44 @@ def seam_troubles(
             yield Trouble(f"stitch[{i}].seam", f'"{name}" is stitched already', "one row of holes for each seam")
 
 
-def mate_troubles(parts: Sequence[tuple[str, Sequence[SeamSpec]]]) -> Iterator[Trouble]:
-    """Yield the mates that are not there, and two that disagree on how they run; parts by name, in their order."""
-    known = {f"{name}.{seam.called}": seam for name, seams in parts for seam in seams}
-    for number, (name, seams) in enumerate(parts):
+def blank_troubles(part: str, count: int, seams: Sequence[SeamSpec]) -> Iterator[Trouble]:
+    """Yield seams on blanks that are not there, or on all of them where only one can be sewn to something else."""
+    for i, seam in enumerate(seams):
+        if seam.blank is not None and seam.blank > count:
+            message = "the part is one blank" if count == 1 else f"the part takes {count} blanks"
+            yield Trouble(f"seam[{i}].blank", f"{seam.blank}: {message}", "leave it out, or give one that is there")
+        foreign = seam.mate is not None and not seam.mate.startswith(f"{part}.")
+        if count > 1 and seam.blank is None and foreign:
+            yield Trouble(f"seam[{i}].blank", "missing beside a mate of another part", "say which is sewn to it")
+
+
+def seams_on(
+    seams: Sequence[SeamSpec], number: int, edges: Collection[str], names: tuple[str, str]
+) -> tuple[SeamSpec, ...]:
+    """Return the seams of a part on one of its blanks, which has these edges; names: of part and blank.
+
+    A mate of the part itself is on the same blank.
+    """
+    part, blank = names
+    found = (seam for seam in seams if seam.blank in (None, number) and seam.edge in edges)
+    return tuple(replace(seam, blank=None, mate=_on_same(seam.mate, part, blank)) for seam in found)
+
+
+def _on_same(mate: str | None, part: str, blank: str) -> str | None:
+    """Return a mate by its name on a blank, if it is one of the part itself."""
+    owner, _, seam = (mate or "").rpartition(".")
+    return f"{blank}.{seam}" if owner == part else mate
+
+
+def mate_troubles(parts: Sequence[tuple[str, Sequence[SeamSpec], int]]) -> Iterator[Trouble]:
+    """Yield the mates that are not there, and two that disagree on how they run.
+
+    parts: by name, in their order, with how many blanks each takes.
+    """
+    known = {f"{name}.{seam.called}": seam for name, seams, _ in parts for seam in seams}
+    known |= {f"{name}.{n}.{seam.called}": seam for name, seams, count in parts for seam in seams
+              for n in range(1, count + 1) if count > 1 and seam.blank in (None, n)}  # fmt: skip
+    for number, (name, seams, _) in enumerate(parts):
         for i, seam in enumerate(seams):
             mine, path = f"{name}.{seam.called}", f"part[{number}].seam[{i}]"
             if seam.mate is None:

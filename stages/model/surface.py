@@ -60,7 +60,8 @@ class RuledSurface:
 
     size_mm: the diagonal of the bounding box, D.
     spans: the range of the part's v that each patch covers: [i, i + 1] on patch i unless the part has been divided.
-    features: what is cut into it and drawn on it, by the part's v: on the whole part, also where this is a piece of it.
+    features: what is cut into it and drawn on it, by the part's v; of a piece of a part, all of the whole one's
+        but for places on the cut at the piece's end.
     divided: whether this is one blank of a part that was divided.
     trim: its outline and holes, where they are not the four edges of the strip.
     tangencies: the part's v of the rulings where faces that were drawn one by one go over into each other.
@@ -79,6 +80,12 @@ class RuledSurface:
         """Return the part's v at the place `local` in [0, 1] of a patch."""
         low, high = self.spans[piece]
         return float(low) + local * float(high - low)
+
+    def place_of(self, v: float) -> tuple[int, float]:
+        """Return the patch at a place by the part's v, and the place on it in [0, 1]; of two patches the first."""
+        piece = next((i for i, (_, high) in enumerate(self.spans) if v <= high), len(self.spans) - 1)
+        low, high = self.spans[piece]
+        return piece, min(max((v - float(low)) / float(high - low), 0.0), 1.0)
 
 
 def whole_spans(count: int) -> tuple[Span, ...]:
@@ -117,6 +124,13 @@ class MeshSurface:
     features: tuple[Placed, ...] = ()
     slits: tuple[tuple[Numbers, Numbers], ...] = ()
     kept: Numbers = field(default_factory=no_pairs)
+
+    @property
+    def straight_loops(self) -> tuple[Numbers, ...]:
+        """Return the boundary loops, the sides of every seam straight: both are congruent, so their zigzag cancels."""
+        sides = [side[1:-1] for pair in self.seams for side in pair]
+        inside = np.concatenate([np.zeros(0, dtype=np.int64), *sides])
+        return tuple(loop[~np.isin(loop, inside)] for loop in self.loops)
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,8 @@ from shapely import STRtree, box, linestrings
 
 from stages.geometry.arcpath import ArcPath, along, lengths, sweeps
 from stages.geometry.arrays import Array, Indices, Mask, Numbers, Points2, Values, cross2, dot, norm, unit
-from stages.geometry.clearance import Pieces, between, boxes, distances, inside, joined, point_distances
+from stages.geometry.clearance import Pieces, between, boxes, distances, joined, point_distances
+from stages.geometry.enclosed import inside
 from stages.model.sheet import NestOptions
 from stages.nest.legal_region import GAP_TOLERANCE_MM, Region
 

@@ -30,7 +30,8 @@ from stages.geometry.arcpath import (
     sweeps,
 )
 from stages.geometry.arrays import Array, Mask, Points2, Vector2
-from stages.geometry.clearance import Pieces, between, clearance, inside, joined, pieces, point_distances
+from stages.geometry.clearance import Pieces, between, clearance, joined, pieces, point_distances
+from stages.geometry.enclosed import inside
 
 GAP_TOLERANCE_MM = 1e-6
 """A gap may fall short by this: above the rounding of coordinates, below what any machine can cut."""

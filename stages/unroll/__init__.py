@@ -12,7 +12,6 @@ that the job accepts, is refused.
 
 from dataclasses import dataclass, field, replace
 
-from stages.geometry import arcpath
 from stages.geometry.arrays import Points2
 from stages.geometry.development import develop
 from stages.geometry.flatmap import Development
@@ -20,15 +19,15 @@ from stages.geometry.relaxed import relaxed
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric, Outcome, StageReport
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface
-from stages.model.tolerances import CLASSES, Class, Tolerances, class_by_strain
+from stages.model.tolerances import Class, Tolerances
 from stages.unroll import outline
 from stages.unroll.branched import unroll_branched
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.divide import division
 from stages.unroll.features import Features, on_strip
-from stages.unroll.finished import box, finished
-from stages.unroll.forming import folded, formed, with_pieces
-from stages.unroll.limits import area_findings, overlap, overlap_findings, strain_findings
+from stages.unroll.finished import box, finished, flat_figures
+from stages.unroll.forming import folded, formed, standing, with_pieces
+from stages.unroll.limits import area_findings, class_of, overlap, overlap_findings, strain_findings
 from stages.unroll.meshes import flatten_mesh
 from stages.unroll.onpart import on_part
 from stages.unroll.plates import flatten
@@ -105,7 +104,8 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     covered = overlap(outer)
     made = on_strip(surface, laid.development, outer, cut.inner if cut is not None else ())
     bends = [formed(sheet.bent, surface, laid.development, spec) for spec in surface.part.spec.bend]
-    bends = bends or [folded(sheet.bent, surface, laid.development)]
+    unasked = standing if surface.tangencies else folded
+    bends = bends or [unasked(sheet.bent, surface, laid.development)]
     lines = on_part([mark for bend in bends for mark in bend.marks], made.outer, made.inner)
     rolls = scheduled(sheet.bent, surface, laid.development)
     strain = next(metric for metric in found.metrics if metric.name == "max_strain")
@@ -123,7 +123,7 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
         *rolls.findings,
     )
     corners = outline.corners(laid.development) if cut is None else box(outer)
-    detail = {"class": _class(strain, by_warp)} | _figures(corners, made, found, cut) | laid.detail | sheet.detail
+    detail = {"class": class_of(strain, by_warp)} | _figures(corners, made, found, cut) | laid.detail | sheet.detail
     detail |= {"bends": [row for bend in bends for row in with_pieces(bend.rows, lines)], "rolls": list(rolls.rows)}
     detail |= {"given": _given(sheet, cut), "sensitivity": sensitivity(sheet.bent)}
     report = StageReport("unroll", name, metrics, findings, detail)
@@ -135,12 +135,6 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     return Outcome(finished(surface.part, whole, corners, tol).replace(sides=sides), report)
 
 
-def _class(strain: Metric, by_warp: Class) -> str:
-    """Return the worse of the classes by warp and by strain; a part without warp has no strain but rounding."""
-    by_strain = class_by_strain(float(strain.value or 0.0))
-    return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
-
-
 DIVIDE = 'along a ruling with cut = "auto"'
 DIVIDE_BEFORE = "before it is given: an outline of its own is not divided here"
 
@@ -150,19 +144,9 @@ def _figures(corners: Points2, made: Features, found: Distortion, cut: Trimmed |
     edges = (found.surface.by_name(), found.flat.by_name()) if cut is None else (None, None)
     areas = (found.surface_area, found.flat_area) if cut is None else (cut.surface_area, cut.flat_area)
     length = sum(found.flat.by_name().values()) if cut is None else cut.outline_length
-    low_x, low_y, high_x, high_y = arcpath.bounds(made.outer.path)
     return {
         "surface": {"area": areas[0], "edges": edges[0]},
-        "flat": {
-            "area": areas[1],
-            "outline_length": length,
-            "width": high_x - low_x,
-            "height": high_y - low_y,
-            "corners": corners.tolist(),
-            "edges": edges[1],
-            "marks": made.mark_rows,
-            "holes": made.hole_rows,
-        },
+        "flat": flat_figures(made, corners, area=areas[1], length=length, edges=edges[1]),
     }
 
 

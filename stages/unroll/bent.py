@@ -34,7 +34,7 @@ class Bent:
 
     def neutral_mm(self, sign: float) -> Vector2:
         """Return the offsets of both edges of the unrolled surface where it bends towards sign * N, mm."""
-        return tapering(self.kept) * self.sheet.neutral_mm(sign, self.k)
+        return neutral_mm(self.sheet, self.k, self.kept, sign)
 
     @property
     def material(self) -> Material:
@@ -58,6 +58,11 @@ class Bent:
     def inside_mm(self, sign: float, tight: Tight) -> float:
         """Return the inside radius at the tightest place of one way, mm; below 0 where the sheet is too thick."""
         return 1.0 / tight.curvature - sign * self.sheet.inside_mm(sign)
+
+
+def neutral_mm(sheet: Layers, k: float, kept: float | None, sign: float) -> Vector2:
+    """Return how far both edges of the unrolled surface lie from those given, where it bends towards sign * N, mm."""
+    return tapering(kept) * sheet.neutral_mm(sign, k)
 
 
 def tapering(kept: float | None) -> Vector2:

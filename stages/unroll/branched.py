@@ -15,7 +15,7 @@ from math import degrees
 
 import numpy as np
 
-from stages.geometry import arcpath, contours
+from stages.geometry import contours
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.mapped import MappedEdge, backwards
 from stages.geometry.turning import FLAT
@@ -24,14 +24,14 @@ from stages.model.gathered import Rule, gathered, told
 from stages.model.pattern import Contour, FlatPattern, Mark
 from stages.model.report import Finding, Metric, Outcome, StageReport
 from stages.model.surface import BranchedSurface, Certificate
-from stages.model.tolerances import CLASSES, Class, Tolerances, class_by_strain
+from stages.model.tolerances import Class, Tolerances
 from stages.unroll import outline
 from stages.unroll.branches import Branch, branches, contours_of, hinge_bend, hinge_gap, hinge_line, turned_rad
 from stages.unroll.branchfeatures import left_of, on_branches
 from stages.unroll.features import Features
-from stages.unroll.finished import box, finished
-from stages.unroll.forming import Forming, folded, formed
-from stages.unroll.limits import area_findings, cut_twice, overlap, overlap_findings, strain_findings
+from stages.unroll.finished import box, finished, flat_figures
+from stages.unroll.forming import Forming, formed, standing
+from stages.unroll.limits import area_findings, class_of, cut_twice, overlap, overlap_findings, strain_findings
 from stages.unroll.marks import ruling_marks
 from stages.unroll.onpart import on_part
 from stages.unroll.rolls import Rolling, scheduled
@@ -93,7 +93,7 @@ def _joined(
         *told([(*bend.findings, *roll.findings) for bend, roll in zip(bends, rolls, strict=True)], surface.numbers),
     )
     lines = left_of([_lines(one, bend, tol.chord_mm) for one, bend in zip(made, bends, strict=True)], features)
-    detail = {"class": _class(strain, by_warp)} | _figures(made, features) | _tables(made, bends, rolls, lines)
+    detail = {"class": class_of(strain, by_warp)} | _figures(made, features) | _tables(made, bends, rolls, lines)
     report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
@@ -115,11 +115,6 @@ def _unjoined(gap: Metric, made: Sequence[Branch]) -> Finding:
     return Finding("flat-gap", f"{message}: their edges in the file do not fit each other", True)
 
 
-def _class(strain: Metric, by_warp: Class) -> str:
-    by_strain = class_by_strain(float(strain.value or 0.0))
-    return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
-
-
 # Contours and lines
 
 
@@ -134,10 +129,10 @@ def _contours(rings: Sequence[tuple[MappedEdge, ...]], name: str, tol: Tolerance
 
 
 def _bends(branch: Branch) -> Forming:
-    """Return the bend lines of a face, named after it; the folds between its patches where none are asked for."""
+    """Return the bend lines of a face, named after it; tight bends and folds where none are asked for."""
     sheet, part = branch.sheet, branch.sheet.surface.part
     found = [formed(sheet.bent, sheet.surface, branch.development, spec) for spec in part.spec.bend]
-    found = found or [folded(sheet.bent, sheet.surface, branch.development)]
+    found = found or [standing(sheet.bent, sheet.surface, branch.development)]
     marks = tuple(_called(mark, branch.number) for one in found for mark in one.marks)
     rows = tuple(row | {"name": _name(str(row["name"]), branch.number)} for one in found for row in one.rows)
     metrics = tuple(metric for one in found for metric in one.metrics)
@@ -225,21 +220,11 @@ def _rms(branch: Branch) -> float | bool | None:
 def _figures(made: Sequence[Branch], features: Features) -> dict[str, object]:
     """Return the figures of both sides; the edges of a blank of several faces have no names."""
     before, after, given = _areas(made)
-    low_x, low_y, high_x, high_y = arcpath.bounds(features.outer.path)
-    flat = {
-        "area": after,
-        "outline_length": contours.length(features.outer.edges),
-        "width": high_x - low_x,
-        "height": high_y - low_y,
-        "corners": box(features.outer).tolist(),
-        "edges": None,
-        "marks": features.mark_rows,
-        "holes": features.hole_rows,
-    }
+    length = contours.length(features.outer.edges)
     changed = any(one.sheet.bent.surface is not one.sheet.surface for one in made)
     return {
         "surface": {"area": before, "edges": None},
-        "flat": flat,
+        "flat": flat_figures(features, box(features.outer), area=after, length=length),
         "given": {"area": given, "edges": None} if changed else None,
         "flat_faces": [_face_row(one) for one in made],
     }

@@ -16,7 +16,7 @@ from stages.geometry.mapped import FlatStrip, MappedEdge, backwards
 from stages.geometry.placing import moved, onto
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.ruled import RuledPatch, curvature
-from stages.model.surface import BranchedSurface, Hinge, RuledSurface
+from stages.model.surface import BranchedSurface, Hinge, RuledSurface, Trim
 from stages.model.tolerances import Tolerances
 from stages.unroll.bent import STRAIGHT
 from stages.unroll.distortion import Distortion, measure
@@ -65,17 +65,25 @@ def branches(surface: BranchedSurface, sheets: Sequence[Neutral], tol: Tolerance
 
 
 def _branch(number: int, sheet: Neutral, face: RuledSurface, development: Development, tol: Tolerances) -> Branch:
-    if face.trim is None:
-        raise ValueError(f"face {number} of a branched surface has no trim")
-    outer, *inner = flat_loops(sheet, development, face.trim)
+    outer, *inner = flat_loops(sheet, development, _trim(face))
     return Branch(number, sheet, development, measure(sheet.surface, development, tol), outer, tuple(inner))
 
 
 def curve_of(face: RuledSurface, edge: tuple[int, int]) -> PlaneCurve:
     """Return the curve of u and v of an edge."""
+    loop, place = edge
+    return _curves(face)[loop][place]
+
+
+def _trim(face: RuledSurface) -> Trim:
     if face.trim is None:
         raise ValueError("a face of a branched surface has no trim")
-    return (face.trim.outer, *face.trim.inner)[edge[0]][edge[1]]
+    return face.trim
+
+
+def _curves(face: RuledSurface) -> tuple[tuple[PlaneCurve, ...], ...]:
+    """Return the loops of a face in u and v, the outer one first."""
+    return (_trim(face).outer, *_trim(face).inner)
 
 
 def flat_edge(sheet: Neutral, curve: PlaneCurve, development: Development, t: Values) -> Points2:
@@ -90,7 +98,10 @@ def hinge_line(surface: BranchedSurface, made: Sequence[Branch], hinge: Hinge, t
 
 
 def hinge_gap(surface: BranchedSurface, made: Sequence[Branch], hinge: Hinge) -> float:
-    """Return how far the flat faces of a hinge lie apart along it at most, mm: at its ends, middle and quarters."""
+    """Return how far the flat faces of a hinge lie apart along it at most, mm: at its ends, middle and quarters.
+
+    It is straight on both, so that the ends would do: the rest tells of a face that is not where it should be.
+    """
     t, side = np.linspace(0.0, 1.0, 5), made[hinge.other]
     there = flat_edge(side.sheet, curve_of(surface.faces[hinge.other], hinge.of_other), side.development, 1.0 - t)
     return float(norm(hinge_line(surface, made, hinge, t) - there).max())
@@ -107,11 +118,9 @@ def contours_of(surface: BranchedSurface, made: Sequence[Branch]) -> list[tuple[
 
 def _rings(face: RuledSurface, branch: Branch, k: int) -> list[Ring[Key, MappedEdge]]:
     """Return the loops of a face with the face on their left."""
-    if face.trim is None:
-        raise ValueError("a face of a branched surface has no trim")
     runs = [branch.outer.edges, *(backwards(hole.edges) for hole in branch.inner)]
     rings = []
-    for j, (curves, edges) in enumerate(zip((face.trim.outer, *face.trim.inner), runs, strict=True)):
+    for j, (curves, edges) in enumerate(zip(_curves(face), runs, strict=True)):
         place = {id(curve): i for i, curve in enumerate(curves)}
         rings.append(Ring(tuple((k, j, place[id(edge.curve)]) for edge in edges), tuple(edges)))
     return rings
@@ -132,10 +141,8 @@ def hinge_bend(surface: BranchedSurface, hinge: Hinge) -> float:
 def _curvature(face: RuledSurface, edge: tuple[int, int]) -> float:
     """Return the curvature across a hinge in its middle; 0 on a plane, whose hinges need be no rulings."""
     ((u, v),) = curve_of(face, edge).at(np.array([0.5]))
-    index = next((i for i, (_, high) in enumerate(face.spans) if v <= float(high)), len(face.spans) - 1)
-    low, high = face.spans[index]
-    local = min(max((float(v) - float(low)) / float(high - low), 0.0), 1.0)
-    return _finite(face.patches[index], local, float(u))
+    piece, local = face.place_of(float(v))
+    return _finite(face.patches[piece], local, float(u))
 
 
 def _finite(patch: RuledPatch, v: float, u: float) -> float:

@@ -15,20 +15,18 @@ from stages.geometry.arrays import Points2, norm
 from stages.geometry.mapped import FlatStrip, images
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.strip import Strip
-from stages.model.features import CurveHole, DrilledHole, NotchSpec
+from stages.model.features import CurveHole, DrilledHole
 from stages.model.pattern import Contour, Mark
 from stages.model.report import Finding
 from stages.model.surface import BranchedSurface, Placed
 from stages.model.tolerances import Tolerances
 from stages.unroll.branches import Branch, hinge_line
-from stages.unroll.features import Features, Flat, assembled, image
-from stages.unroll.notches import Notch, notched
-from stages.unroll.notches import on_outline as notch_on_outline
+from stages.unroll.features import Features, Flat, image, on_outline
 from stages.unroll.onpart import on_part
 from stages.unroll.trimmed import knots_of
 
 AROUND = 257
-"""Points of a drilled hole at which it is held against the bends."""
+"""Corners of the polygon for which a drilled hole is held against the bends: within 1e-4 of its radius."""
 
 
 def on_branches(
@@ -38,12 +36,7 @@ def on_branches(
 
     Raises NoSolutionError where a curve is not resolved or its arcs do not keep the chord.
     """
-    notches = [notch_on_outline(one, one.spec, outer.edges) for one in surface.features
-               if isinstance(one.spec, NotchSpec)]  # fmt: skip
-    found = [_image(surface, made, one, tol) for one in surface.features if not isinstance(one.spec, NotchSpec)]
-    fatal = [one for one in (*notches, *found) if isinstance(one, Finding)]
-    cut = notched(surface.part, outer, [one for one in notches if isinstance(one, Notch)])
-    return assembled(surface, cut, [one for one in found if isinstance(one, Flat)], fatal, holes=holes)
+    return on_outline(surface, outer, holes, lambda one: _image(surface, made, one, tol))
 
 
 def left_of(rows: Sequence[tuple[Mark, ...]], features: Features) -> list[tuple[Mark, ...]]:

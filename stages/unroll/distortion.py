@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from stages.geometry.arrays import Array, cross2, dot, norm
+from stages.geometry.arrays import Array, cross2, dot, norm, similarities
 from stages.geometry.flatmap import Development
 from stages.geometry.ruled import RuledPatch
 from stages.model.report import Metric, Where
@@ -95,7 +95,7 @@ def piece_gap(nodes: list[PieceNodes]) -> float:
 # Metric and strain
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Tangents:
     """The surface at the nodes of one piece: S_u, (m, n, 1, 3), the same all along a ruling, and S_v, (m, n, k, 3)."""
 
@@ -178,7 +178,7 @@ def _strains(
     )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Principal:
     """Principal strains at the nodes of a piece, and the share of the surface's area each stands for, (m, n, k)."""
 
@@ -205,9 +205,7 @@ def _principal(side: _Tangents, at: PieceNodes) -> _Principal:
     clear = (aside > CLEAR * norm(side.s_v).max(axis=(1, 2), keepdims=True)) & (norm(side.s_u) >= length)
     flat_e = at.flat_u / length[..., None]
     flat_w = (at.flat_v - along[..., None] * flat_e) / np.where(clear, aside, 1.0)[..., None]
-    # of the matrix [flat_e, flat_w]: half the size of its similarity, and of its mirrored similarity
-    turn = np.hypot(flat_e[..., 0] + flat_w[..., 1], flat_e[..., 1] - flat_w[..., 0]) / 2.0
-    skew = np.hypot(flat_e[..., 0] - flat_w[..., 1], flat_e[..., 1] + flat_w[..., 0]) / 2.0
+    turn, skew = similarities(flat_e, flat_w)
     area = at.weights[..., None] * ACROSS_WEIGHTS * length * aside
     return _Principal(
         np.where(clear, turn + skew - 1.0, 0.0), np.where(clear, turn - skew - 1.0, 0.0), np.where(clear, area, 0.0)

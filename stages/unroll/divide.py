@@ -38,9 +38,8 @@ STEPS = 4096
 
 MOST_TURN = pi / 12.0
 """Most that an edge turns, in rad, over one arc: where its curvature doubles over 1 rad, that is within 2e-4 radii."""
-FEWEST = 4
-"""Arcs along each edge of a patch, however straight it is."""
-MOST = 512
+FEWEST, MOST = 4, 512
+"""Arcs along each edge of a patch: however straight it is, and however it winds (at `MOST_TURN` an arc, 21 times)."""
 
 HALVINGS = 8
 """Of the largest run's share: the blanks are evened out to 1/256 of the area."""
@@ -202,7 +201,10 @@ def _edge(strip: Strip, u: float, places: Array) -> tuple[Array, Array]:
 
 
 def blank(surface: RuledSurface, number: int, low: Fraction, high: Fraction) -> RuledSurface:
-    """Return the part of the surface between two of its rulings, by their v."""
+    """Return the part of the surface between two of its rulings, by their v.
+
+    A place on a cut belongs to the blank that begins there.
+    """
     patches: list[RuledPatch] = []
     spans: list[Span] = []
     for patch, (start, end) in zip(surface.patches, surface.spans, strict=True):
@@ -213,7 +215,18 @@ def blank(surface: RuledSurface, number: int, low: Fraction, high: Fraction) -> 
             spans.append((first, last))
     part = replace(surface.part, spec=surface.part.spec.blank(number))
     size = ruled.size_of(patches)
-    return replace(surface, part=part, patches=tuple(patches), size_mm=size, spans=tuple(spans), divided=True)
+    ends_inside = high < surface.spans[-1][1]
+    features = tuple(one for one in surface.features
+                     if not (ends_inside and one.at is not None and one.at[1] == float(high)))  # fmt: skip
+    return replace(
+        surface,
+        part=part,
+        patches=tuple(patches),
+        size_mm=size,
+        spans=tuple(spans),
+        features=features,
+        divided=True,
+    )
 
 
 def division(surface: RuledSurface) -> tuple[Finding, ...]:

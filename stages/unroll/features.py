@@ -5,19 +5,19 @@
 What construct placed in u and v goes through the flat map: a place becomes a point, a curve an exact edge that is
 evaluated through the map (`stages.geometry.mapped`); a circle of the flat pattern is an exact circle, a drilled hole
 the image of the curve in which the cylinder meets the surface (`stages.geometry.drill`).  Of a part that was divided,
-a blank takes what lies on it; what a cut would go through is refused.
+a blank takes what lies on it (`onblank`); what a cut would go through is refused.
 
 Marks do not reach beyond the outline nor across holes (`onpart`); a text that does is told (`texts`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from stages.geometry import contours
 from stages.geometry.arcpath import ArcPath
-from stages.geometry.arrays import Array, Vector2, cross2, unit
+from stages.geometry.arrays import Vector2, unit
 from stages.geometry.drill import drilled
 from stages.geometry.flatmap import Development
 from stages.geometry.mapped import FlatStrip, images
@@ -36,12 +36,13 @@ from stages.model.features import (
 )
 from stages.model.pattern import Contour, Mark, NotchPlace, Purpose, Text
 from stages.model.report import Finding, Metric
-from stages.model.surface import Placed, Plate, RuledSurface, Surface
+from stages.model.surface import BranchedSurface, MeshSurface, Placed, Plate, RuledSurface, Surface
 from stages.unroll import outline
 from stages.unroll.marks import ruling_marks, traced
 from stages.unroll.notches import Notch, Notched, notched
 from stages.unroll.notches import on_outline as notch_on_outline
 from stages.unroll.notches import on_strip as notch_on_strip
+from stages.unroll.onblank import crosses_end, cut_through, share_of
 from stages.unroll.onpart import left_off, on_part
 from stages.unroll.texts import text_findings
 from stages.unroll.webs import judged
@@ -65,7 +66,7 @@ class Features:
     boundary: Contour | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Flat:
     """A feature in the plane: its edges, or the point that it is at and the direction of the ruling there (x)."""
 
@@ -95,15 +96,15 @@ def on_strip(
             findings += [on_trim] if isinstance(on_trim, Finding) else []
             notches += [on_trim] if isinstance(on_trim, Notch) else []
             continue
-        here = _share(one, knots)
-        if here == CUT:
-            findings.append(_cut_through(one))
-        elif here == ON and isinstance(one.spec, NotchSpec):
+        here = share_of(one, knots)
+        if here == "cut":
+            findings.append(cut_through(one))
+        elif here == "on" and isinstance(one.spec, NotchSpec):
             notches.append(notch_on_strip(one, one.spec, knots))
-        elif here == ON:
+        elif here == "on":
             made = image(one, flat, strip)
             if surface.divided and _crosses_cut(made, development):
-                findings.append(_cut_through(one))
+                findings.append(cut_through(one))
             elif isinstance(made, Finding):
                 findings.append(made)
             else:
@@ -124,55 +125,32 @@ def _notch_on_trim(one: Placed, spec: NotchSpec, outer: Contour) -> Notch | Find
 
 def on_plate(plate: Plate, outer: Contour, holes: tuple[Contour, ...]) -> Features:
     """Return the features of a plate beside the holes of its surface."""
-    notches = [
-        notch_on_outline(one, one.spec, outer.edges) for one in plate.features if isinstance(one.spec, NotchSpec)
-    ]
-    found = [
-        _circle_hole(Flat(one, one.curve, one.at, np.array([1.0, 0.0])))
-        for one in plate.features
-        if not isinstance(one.spec, NotchSpec)
-    ]
-    off = [notch for notch in notches if isinstance(notch, Finding)]
-    made_outer = notched(plate.part, outer, [notch for notch in notches if isinstance(notch, Notch)])
-    return assembled(plate, made_outer, found, off, holes=holes)
+    return on_outline(plate, outer, holes, lambda one: _circle_hole(Flat(one, one.curve, one.at, np.array([1.0, 0.0]))))
 
 
-ON, OFF, CUT = "on", "off", "cut"
-SAMPLES = 257
+def on_outline(
+    surface: Plate | MeshSurface | BranchedSurface,
+    outer: Contour,
+    holes: tuple[Contour, ...],
+    drawn: Callable[[Placed], Flat | Finding],
+) -> Features:
+    """Return the features of a part whose outline has no named edges.
 
-
-def _share(one: Placed, knots: Array) -> str:
-    """Return whether a feature lies on a blank, off it, or partly so, by its v."""
-    low, high = knots[0], knots[-1]
-    if one.at is not None:
-        # a place on a cut belongs to the blank that begins there
-        return ON if low <= one.at[1] < high or one.at[1] == high == np.floor(high) else OFF
-    v = np.concatenate([edge.at(np.linspace(0.0, 1.0, SAMPLES)) for edge in one.curve])[:, 1]
-    inside = (v >= low - ON_CUT) & (v <= high + ON_CUT)
-    return ON if inside.all() else CUT if inside.any() else OFF
-
-
-ON_CUT = 1e-9
-"""How far beyond an end of the blank, in v, a curve may run by rounding."""
-
-
-def _cut_through(one: Placed) -> Finding:
-    message = f"{one.name} lies on both sides of a ruling along which the part is divided"
-    return Finding("feature-cut", message, fatal=True, where={"feature": one.name})
+    Notches go by their distance along it, everything else is laid flat by `drawn`, which may refuse it.
+    """
+    notches = [notch_on_outline(one, one.spec, outer.edges) for one in surface.features
+               if isinstance(one.spec, NotchSpec)]  # fmt: skip
+    found = [drawn(one) for one in surface.features if not isinstance(one.spec, NotchSpec)]
+    fatal = [one for one in (*notches, *found) if isinstance(one, Finding)]
+    made_outer = notched(surface.part, outer, [one for one in notches if isinstance(one, Notch)])
+    return assembled(surface, made_outer, [one for one in found if isinstance(one, Flat)], fatal, holes=holes)
 
 
 def _crosses_cut(made: Flat | Finding, development: Development) -> bool:
     """Return whether a hole about a place crosses an end ruling of a blank; a drill that found no way round does."""
     if isinstance(made, Finding):
         return True
-    if made.at is None or not made.edges:
-        return False
-    u, flat = np.array([0.0, 1.0]), development.pieces
-    ends = (flat[0].positions(u, np.zeros(2)), flat[-1].positions(u, np.ones(2)))
-    t = np.linspace(0.0, 1.0, SAMPLES)
-    around = np.concatenate([edge.at(t) for edge in made.edges])
-    sides = [cross2(end[1] - end[0], around - end[0]) for end in ends]
-    return any(bool(side.min() < 0.0 < side.max()) for side in sides)
+    return made.at is not None and bool(made.edges) and crosses_end(made.edges, development)
 
 
 def image(one: Placed, flat: FlatStrip, strip: Strip) -> Flat | Finding:

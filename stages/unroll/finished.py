@@ -42,6 +42,26 @@ def _rotations(asked: Literal["free"] | tuple[Angle, ...] | None) -> tuple[float
     return tuple(float(angle) for angle in asked) if isinstance(asked, tuple) else asked
 
 
+def flat_figures(
+    made: Features, corners: Points2, *, area: float, length: float, edges: dict[str, float] | None = None
+) -> dict[str, object]:
+    """Return what the report says of a flat pattern: area in mm2, lengths in mm, marks and holes.
+
+    edges: the lengths of the edges of a strip, by name; those of other parts have no names.
+    """
+    low_x, low_y, high_x, high_y = bounds(made.outer.path)
+    return {
+        "area": area,
+        "outline_length": length,
+        "width": high_x - low_x,
+        "height": high_y - low_y,
+        "corners": corners.tolist(),
+        "edges": edges,
+        "marks": made.mark_rows,
+        "holes": made.hole_rows,
+    }
+
+
 def box(outer: Contour) -> Points2:
     """Return the corners of the box round a contour, counter-clockwise from the least, mm."""
     low_x, low_y, high_x, high_y = bounds(outer.path)

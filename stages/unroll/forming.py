@@ -1,11 +1,11 @@
 """Bend lines for a part that is bent in steps, at equal turning of the normal.
 
-Every run that bends one way, by theta, is divided into N = ceil(theta / delta) steps of theta / N, so that the hits add
-up to the part's own angle; each hit lies in the middle of its step, between two flat facets [1]_.  On a cone or any
-other developable, equal spacing would not do: the hits follow the rulings.  A facet is off the surface by
+What bends one way by itself (`zones`), by theta, is divided into N = ceil(theta / delta) steps of theta / N, so that
+the hits add up to the part's own angle; each hit lies in the middle of its step, between two flat facets [1]_.  On a
+cone or any other developable, equal spacing would not do: the hits follow the rulings.  A facet is off the surface by
 rho (1 - cos(delta / 2)), rho the mean radius over its step at the wider end.  Folds between patches are hits of their
 own, with their own angle and the smallest radius of the material; they are drawn on every part that has them, asked for
-or not.
+or not, and so are tight bends between flat faces.
 
 The flat frame is seen from the side of N = p x c0'.  A bend towards the viewer is `up` (BEND_UP), away from the viewer
 `down` (BEND_DOWN).  Radii in the table are inside radii, at the c0 end and at the c1 end of the line.
@@ -16,7 +16,7 @@ The flat frame is seen from the side of N = p x c0'.  A bend towards the viewer 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
-from math import ceil, cos, degrees, radians
+from math import ceil, cos, degrees
 from typing import Literal
 
 import numpy as np
@@ -25,22 +25,21 @@ from stages.errors import NoSolutionError
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Values, cross2, norm
 from stages.geometry.flatmap import Development
-from stages.geometry.turning import FLAT, Run, chord_turning, is_fold, places, run_angle, runs
+from stages.geometry.turning import Run, chord_turning, equal_turns, is_fold, places, run_angle, runs
 from stages.model.forming import BendSpec
 from stages.model.pattern import Mark
 from stages.model.report import Finding, Metric
 from stages.model.surface import RuledSurface
 from stages.unroll.bent import Bent, across, radii_at
+from stages.unroll.zones import between_flats, is_pressed, zones
 
-SUMMED = 1e-9
-"""What a sum of turns may be over a whole number of steps by rounding alone, as a share."""
 MOST_HITS = 10_000
 """More hits on one run are a rolled part."""
 ANGLE_LIMIT_DEG = 0.1
 """How far the sum of the hits may be from the turning of the surface: no press brake holds more."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class BendLine:
     """One hit: its name, the place of its ruling (over the given patches), signed angle, and how far its facet is off.
 
@@ -91,7 +90,33 @@ def folded(bent: Bent, neutral: RuledSurface, development: Development) -> Formi
     return Forming(tuple(_mark(line) for line in lines), (), (), tuple(_row(bent, line, None) for line in lines))
 
 
-FOLD_NAME = "fold"
+def standing(bent: Bent, neutral: RuledSurface, development: Development) -> Forming:
+    """Return the bends between flat faces, one hit each, and the folds, for a part without bend lines of its own.
+
+    The table says what of the part is not rolled; its angles are added up where that is all of it.
+    """
+    every = between_flats(bent)
+    bends = [zone for zone in every if is_pressed(bent, zone)]
+    if not bends:
+        return folded(bent, neutral, development)
+    hits = [_in_one(bent, zone) for zone in bends]
+    lines = [
+        *_lines(bent, neutral, development, hits, BEND_NAME),
+        *_lines(bent, neutral, development, folds_of(bent), FOLD_NAME),
+    ]
+    lines.sort(key=lambda line: line.place)
+    metrics = _metrics(bent, lines) if len(bends) == len(every) else ()
+    rows = tuple(_row(bent, line, following) for line, following in zip_longest(lines, lines[1:]))
+    return Forming(tuple(_mark(line) for line in lines), metrics, (), rows)
+
+
+def _in_one(bent: Bent, zone: Run) -> "Hit":
+    """Return the hit that makes a whole bend, in the middle of its turning."""
+    (place,) = places(bent.bends, zone, np.array([0.5]))
+    return float(place), run_angle(zone), False, float(facet_errors(bent, zone, 1)[0])
+
+
+BEND_NAME, FOLD_NAME = "bend", "fold"
 
 
 # Where
@@ -101,11 +126,11 @@ def bend_lines(bent: Bent, neutral: RuledSurface, development: Development, spec
     """Return the hits in the order of v."""
     found: list[Hit] = []
     for run in runs(bent.bends):
-        angle = run_angle(run)
         if is_fold(run[0]):
-            found.append((float(run[0].piece), angle, True, 0.0))
-        elif abs(angle) > FLAT:
-            found += [(place, step, False, off) for place, step, off in _hits(bent, run, spec)]
+            found.append((float(run[0].piece), run_angle(run), True, 0.0))
+            continue
+        for zone in zones(bent, run, spec):
+            found += [(place, step, False, off) for place, step, off in _hits(bent, zone, spec)]
     return _lines(bent, neutral, development, found, spec.name)
 
 
@@ -141,7 +166,7 @@ def _hits(bent: Bent, run: Run, spec: BendSpec) -> list[tuple[float, float, floa
     """Return place, signed angle and facet error of every hit of a run."""
     angle = run_angle(run)
     if spec.max_angle is not None:
-        count = max(ceil(abs(angle) / radians(float(spec.max_angle)) * (1.0 - SUMMED)), 1)
+        count = equal_turns(abs(angle), float(spec.max_angle))
     else:
         count = _count_by_facet(bent, run, float(spec.facet_error or 0))
     middles = places(bent.bends, run, (np.arange(count) + 0.5) / count)
@@ -183,13 +208,9 @@ JUST = 1e-9
 
 def flat_rulings(neutral: RuledSurface, development: Development, v: list[float]) -> list[Points2]:
     """Return the ends of the flat rulings at the part's v, each of shape (2, 2), from c0 to c1."""
-    found = []
-    for value in v:
-        index = next((i for i, (_, high) in enumerate(neutral.spans) if value <= high), len(neutral.spans) - 1)
-        low, high = neutral.spans[index]
-        local = min(max((value - float(low)) / float(high - low), 0.0), 1.0)
-        found.append(development.pieces[index].positions(np.array([0.0, 1.0]), np.full(2, local)))
-    return found
+    found = [neutral.place_of(value) for value in v]
+    u = np.array([0.0, 1.0])
+    return [development.pieces[piece].positions(u, np.full(2, local)) for piece, local in found]
 
 
 # What

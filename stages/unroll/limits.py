@@ -7,11 +7,17 @@ from stages.geometry.cover import doubled
 from stages.geometry.overlap import overlaps
 from stages.model.pattern import Contour
 from stages.model.report import Finding, Metric
-from stages.model.tolerances import STRAIN_LIMIT, Class, Tolerances, class_by_strain
+from stages.model.tolerances import CLASSES, STRAIN_LIMIT, Class, Tolerances, class_by_strain
 from stages.unroll import outline
 
 TOUCHING_MM = 1e-3
 """Contours that run nearer to each other than this leave nothing between them."""
+
+
+def class_of(strain: Metric, by_warp: Class) -> str:
+    """Return the worse of the classes by warp and by strain; a part without warp has no strain but rounding."""
+    by_strain = class_by_strain(float(strain.value or 0.0))
+    return "no class" if by_strain is None else max(by_warp, by_strain, key=CLASSES.index)
 
 
 def strain_findings(strain: Metric, by_warp: Class, tol: Tolerances) -> tuple[Finding, ...]:
@@ -30,16 +36,21 @@ def overlap(outer: Contour) -> Metric:
     """Return the area that the pattern covers twice: proved where the lines and arcs that are cut cover none.
 
     Where edges meet at almost no angle, arcs fitted to them cross by less than the chord: what goes away on finer arcs
-    (as chord^1.5, where two edges part like a parabola) is not the pattern's own.
+    (as chord^1.5, where two edges part like a parabola) is not the pattern's own.  More than the chord all along the
+    contour is.
     """
     allowed = outer.chord_mm**2
-    covered = doubled(outer.path)
-    if covered == 0.0:
-        return Metric("overlap_mm2", 0.0, "mm2", "proved", allowed)
+    cut = covered = doubled(outer.path)
+    most = outer.chord_mm * float(arcpath.lengths(outer.path).sum())
     for times in FINER:
-        if covered > allowed:
+        if allowed < covered <= most:
             covered = min(covered, doubled(outline.contour(outer.edges, outer.chord_mm / times).path))
-    return Metric("overlap_mm2", covered, "mm2", "sampled", allowed)
+    return covered_metric(covered, outer.chord_mm, proved=cut == 0.0)
+
+
+def covered_metric(covered: float, chord_mm: float, *, proved: bool) -> Metric:
+    """Return the metric of an area covered twice."""
+    return Metric("overlap_mm2", covered, "mm2", "proved" if proved else "sampled", chord_mm**2)
 
 
 FINER = 4.0, 16.0

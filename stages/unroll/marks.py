@@ -4,7 +4,6 @@ Between two lines the part bends by the same angle; equal spacing would do so on
 part flattened by least strain the rulings are slightly curved, and so are their lines.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,7 +13,7 @@ from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import norm
 from stages.geometry.flatmap import DevelopedRuling, Development
 from stages.geometry.plane import PlaneCurve
-from stages.geometry.turning import turning, turning_places
+from stages.geometry.turning import equal_turns, turning, turning_places
 from stages.model.features import RulingMarks
 from stages.model.pattern import Mark
 
@@ -25,20 +24,11 @@ def ruling_marks(development: Development, spec: RulingMarks, *, chord_mm: float
     Raises NoSolutionError where the turning of the normal does not resolve.
     """
     bends = turning(tuple(piece.patch for piece in development.pieces))
-    steps = spec.count + 1 if spec.count is not None else _steps(bends.total_rad, spec)
+    steps = spec.count + 1 if spec.count is not None else equal_turns(bends.total_rad, float(spec.max_angle or 1))
     found = turning_places(bends, len(development.pieces), steps)
     return tuple(
         Mark(f"{spec.name}-{i}", _line(development, float(place), chord_mm)) for i, place in enumerate(found, 1)
     )
-
-
-def _steps(total_rad: float, spec: RulingMarks) -> int:
-    """Return into how many equal turns the total is divided so that none exceeds `max_angle`."""
-    return max(math.ceil(total_rad / math.radians(float(spec.max_angle or 1)) * (1.0 - SUMMED)), 1)
-
-
-SUMMED = 1e-9
-"""What the sum of the turns may be over a whole number of angles by rounding alone, as a share."""
 
 
 def _line(development: Development, place: float, chord_mm: float) -> ArcPath:

@@ -17,7 +17,7 @@ from stages.model.report import Metric, Where
 from stages.model.surface import MeshSurface
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Loops:
     """The boundary loops in the plane, the outer first: numbers of their vertices, and smooth edges through them."""
 

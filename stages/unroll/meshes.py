@@ -23,19 +23,18 @@ from stages.geometry.meshnearest import at
 from stages.geometry.plane import CircularArc, PlaneCurve
 from stages.geometry.planespline import spline
 from stages.geometry.refit import refitted
-from stages.model.features import CircleHole, NotchSpec
-from stages.model.pattern import Contour, FlatPattern
-from stages.model.report import Finding, Metric, Outcome, StageReport
+from stages.model.features import CircleHole
+from stages.model.pattern import FlatPattern
+from stages.model.report import Metric, Outcome, StageReport
 from stages.model.surface import Certificate, MeshSurface, Placed
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline
-from stages.unroll.features import Features, Flat, assembled
-from stages.unroll.finished import box, finished
+from stages.unroll.features import Features, Flat, on_outline
+from stages.unroll.finished import box, finished, flat_figures
 from stages.unroll.limits import overlap, overlap_findings
 from stages.unroll.meshdistortion import Loops, areas, distortion, sides, strain_field
 from stages.unroll.meshneutral import mesh_neutral
 from stages.unroll.meshsewing import sewing, without_zigzag
-from stages.unroll.notches import Notch, notched, on_outline
 
 POSITIONS = 1e-9
 """What flat positions are worth without any noise, as a share of the size."""
@@ -66,7 +65,7 @@ def flatten_mesh(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPatte
     outer = outline.contour(loops.fitted[0].edges, tol.chord_mm, name)
     holes = tuple(outline.contour(loop.edges, tol.chord_mm, f"hole-{i}") for i, loop in enumerate(loops.fitted[1:], 1))
     covered = overlap(outer)
-    made = _features(surface, flat, outer, holes)
+    made = on_outline(surface, outer, holes, lambda one: _image(surface, flat, one))
     metrics = (
         *distortion(surface, flat, loops),
         *sewing(surface, flat, loops),
@@ -90,8 +89,7 @@ def flatten_mesh(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPatte
 
 def _loops(surface: MeshSurface, flat: MeshMap) -> Loops:
     """Return the boundary loops without what lies inside the sides of seams, and smooth edges through them."""
-    inside = np.concatenate([np.zeros(0, dtype=np.int64), *(side[1:-1] for pair in surface.seams for side in pair)])
-    vertices = tuple(loop[~np.isin(loop, inside)] for loop in surface.loops)
+    vertices = surface.straight_loops
     places = without_zigzag(surface, flat)
     accuracy = max(WITHIN_NOISE * flat.noise_mm, POSITIONS * surface.size_mm)
     return Loops(vertices, tuple(refitted(places[loop], accuracy=accuracy) for loop in vertices))
@@ -103,15 +101,6 @@ def _boundary(loops: Loops) -> tuple[Metric, ...]:
         Metric("boundary_sagitta_mm", max(loop.sagitta_mm for loop in loops.fitted), "mm"),
         Metric("boundary_uncertainty_mm", max(loop.uncertainty_mm for loop in loops.fitted), "mm"),
     )
-
-
-def _features(surface: MeshSurface, flat: MeshMap, outer: Contour, holes: tuple[Contour, ...]) -> Features:
-    """Return holes, marks and notches in the plane."""
-    notches = [on_outline(one, one.spec, outer.edges) for one in surface.features if isinstance(one.spec, NotchSpec)]
-    found = [_image(surface, flat, one) for one in surface.features if not isinstance(one.spec, NotchSpec)]
-    off = [notch for notch in notches if isinstance(notch, Finding)]
-    made_outer = notched(surface.part, outer, [notch for notch in notches if isinstance(notch, Notch)])
-    return assembled(surface, made_outer, found, off, holes=holes)
 
 
 def _image(surface: MeshSurface, flat: MeshMap, one: Placed) -> Flat:
@@ -138,19 +127,10 @@ def _closed(points: Points2) -> Points2:
 
 def _figures(surface: MeshSurface, flat: MeshMap, made: Features, corners: Points2) -> dict[str, object]:
     """Return the figures of both sides: areas of the triangles on the surface, and of what is cut."""
-    width, height = corners[2] - corners[0]
+    area, length = sum(contours.area(one.edges) for one in (made.outer, *made.inner)), contours.length(made.outer.edges)
     return {
         "surface": {"area": float(areas(sides(surface, flat)).sum()), "edges": None},
-        "flat": {
-            "area": sum(contours.area(contour.edges) for contour in (made.outer, *made.inner)),
-            "outline_length": contours.length(made.outer.edges),
-            "width": float(width),
-            "height": float(height),
-            "corners": corners.tolist(),
-            "edges": None,
-            "marks": made.mark_rows,
-            "holes": made.hole_rows,
-        },
+        "flat": flat_figures(made, corners, area=area, length=length),
         "flattened_on": flat.kind,
         "strain_field": strain_field(surface, flat),
     }

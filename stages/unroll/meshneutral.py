@@ -17,15 +17,12 @@ import numpy as np
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshbends import MeshBends, SharpVertex, bends_of, parallel
 from stages.geometry.meshfit import fitted, stars
-from stages.geometry.meshflat import MeshMap, at_rest, edge_lengths
+from stages.geometry.meshflat import AT_REST, MeshMap, at_rest, edge_lengths
 from stages.geometry.meshtopology import edges_of
 from stages.model.kfactor import MIDDLE, k_at
 from stages.model.report import Evidence, Finding, Metric
 from stages.model.sheetface import LITTLE, Layers, mesh_layers
 from stages.model.surface import MeshSurface
-
-AT_REST = 1e-10
-"""The last step of the flattening, relative to the size of the part."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ part, to the square of the zigzag's width over the distance in which the strain 
 import numpy as np
 
 from stages.geometry import contours
+from stages.geometry.arapkept import KEPT
 from stages.geometry.arrays import Array, Numbers, Points2, Values, norm
 from stages.geometry.meshflat import MeshMap
 from stages.geometry.meshtopology import edge_numbers, edges_of
@@ -15,13 +16,11 @@ from stages.model.report import Metric
 from stages.model.surface import MeshSurface
 from stages.unroll.meshdistortion import Loops, runs
 
-KEPT = 1e-9
-"""By how much of itself a kept length may be off."""
-
 PER_DEGREE = 4
 """Edges of a cut for each degree of the curve that it becomes; less would follow the zigzag."""
 
 CUBIC = 3
+"""The highest degree of that curve: it may bend to both sides between mouth and end, and no oftener."""
 
 
 def without_zigzag(surface: MeshSurface, flat: MeshMap) -> Points2:

@@ -30,7 +30,7 @@ ROUNDED = 8 * EPS
 """What a position may be off by rounding, as a share of the largest: two series, two products and four sums."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PieceNodes:
     """One piece at n nodes along each of m panels, their ends first and last, and k places across.
 

@@ -209,6 +209,7 @@ def frame(edges: Sequence[PlaneCurve], spot: Spot) -> tuple[Vector2, Vector2]:
 
 
 BESIDE = 1e-6
+"""How far in t beside an end without a direction its edge has one: a micrometre per metre."""
 
 
 def _edges(edges: Sequence[PlaneCurve], cuts: Sequence[Cut]) -> tuple[PlaneCurve, ...]:

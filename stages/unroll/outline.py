@@ -5,7 +5,7 @@ import shapely
 
 from stages.geometry import arcpath, biarc
 from stages.geometry.arcpath import ArcPath
-from stages.geometry.arrays import Array, Points2, Vector2, norm
+from stages.geometry.arrays import Array, Points2, Vector2, diagonal
 from stages.geometry.flatmap import DevelopedEdge, DevelopedRuling, Development
 from stages.geometry.plane import PlaneCurve, Segment
 from stages.model.pattern import Contour, EdgeRun
@@ -58,6 +58,6 @@ def label_place(outer: ArcPath, inner: tuple[ArcPath, ...], chord_mm: float) -> 
     valid = shapely.get_parts(shapely.make_valid(shapely.Polygon(rings[0], rings[1:])))
     # a contour that runs back along itself leaves lines beside the area
     area = max(valid, key=lambda part: part.area)
-    size = float(norm(np.ptp(rings[0], axis=0)))
+    size = diagonal(rings[0])
     point = shapely.get_point(shapely.maximum_inscribed_circle(area, tolerance=size / 100.0), 0)
     return np.array([point.x, point.y])

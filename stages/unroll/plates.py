@@ -9,7 +9,8 @@ from stages.model.surface import Plate
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline
 from stages.unroll.features import Features, on_plate
-from stages.unroll.finished import box, finished
+from stages.unroll.finished import box, finished, flat_figures
+from stages.unroll.limits import covered_metric
 
 
 def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
@@ -17,28 +18,26 @@ def flatten(plate: Plate, tol: Tolerances) -> Outcome[FlatPattern | None]:
     spec = plate.part.spec
     contour = outline.contour(plate.outline, tol.chord_mm, spec.name)
     holes = tuple(outline.contour(hole, tol.chord_mm, f"hole-{i}") for i, hole in enumerate(plate.holes, 1))
-    overlap = sum(doubled(contour.path) for contour in (contour, *holes))
-    metrics = _metrics(overlap, tol)
-    crossed = _crossing_findings(metrics[-1])
+    covered = sum(doubled(one.path) for one in (contour, *holes))
+    overlap = covered_metric(covered, tol.chord_mm, proved=covered == 0.0)
+    crossed = _crossing_findings(overlap)
     made = Features(contour, findings=crossed) if crossed else on_plate(plate, contour, holes)
     corners = box(contour)
     detail = {"class": "exact"} | _detail(made, corners)
-    report = StageReport("unroll", spec.name, (*metrics, *made.metrics), made.findings, detail)
+    report = StageReport("unroll", spec.name, (*UNDISTORTED, overlap, *made.metrics), made.findings, detail)
     if not report.passed:
         return Outcome(None, report)
     return Outcome(finished(plate.part, made, corners, tol), report)
 
 
-def _metrics(overlap: float, tol: Tolerances) -> tuple[Metric, ...]:
-    """Return a plate's distortion: a rigid motion has none, which is exact."""
-    exact = (
-        Metric("length_error", 0.0, "", "proved"),
-        Metric("area_error", 0.0, "", "proved"),
-        Metric("angle_error_deg", 0.0, "deg", "proved"),
-        Metric("metric_error", 0.0, "", "proved"),
-        Metric("max_strain", 0.0, "", "proved"),
-    )
-    return (*exact, Metric("overlap_mm2", overlap, "mm2", "proved", tol.chord_mm**2))
+UNDISTORTED = (
+    Metric("length_error", 0.0, "", "proved"),
+    Metric("area_error", 0.0, "", "proved"),
+    Metric("angle_error_deg", 0.0, "deg", "proved"),
+    Metric("metric_error", 0.0, "", "proved"),
+    Metric("max_strain", 0.0, "", "proved"),
+)
+"""A plate is moved and nothing else: that has no distortion."""
 
 
 def _crossing_findings(covered: Metric) -> tuple[Finding, ...]:
@@ -52,17 +51,8 @@ def _crossing_findings(covered: Metric) -> tuple[Finding, ...]:
 def _detail(made: Features, corners: Array) -> dict[str, object]:
     """Return area and lengths from the exact edges ("surface") and the same again as the flat figures."""
     area = sum(contours.area(contour.edges) for contour in (made.outer, *made.inner))
-    low, high = corners[0], corners[2]
+    length = contours.length(made.outer.edges)
     return {
         "surface": {"area": area, "edges": None},
-        "flat": {
-            "area": area,
-            "outline_length": contours.length(made.outer.edges),
-            "width": float(high[0] - low[0]),
-            "height": float(high[1] - low[1]),
-            "corners": corners.tolist(),
-            "edges": None,
-            "marks": made.mark_rows,
-            "holes": made.hole_rows,
-        },
+        "flat": flat_figures(made, corners, area=area, length=length),
     }

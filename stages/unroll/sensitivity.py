@@ -22,11 +22,12 @@ from numpy.polynomial import legendre
 
 from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector2, Vector3, dot, norm, unit
+from stages.geometry.development import axes
 from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
-from stages.geometry.ruled import sideways
+from stages.geometry.ruled import longest_ruling, sideways
 from stages.geometry.turning import FLAT, PatchTurning, Stretch, is_fold
 from stages.model.sheetface import Layers
-from stages.unroll.bent import Bent, tapering
+from stages.unroll.bent import Bent, neutral_mm
 
 DIMENSIONS = ("c0", "c1", "start", "end", "width", "height", "area")
 """What is laid out: lengths in mm, the area in mm2."""
@@ -65,7 +66,7 @@ class Change:
 
     def neutral_mm(self, sign: float) -> Vector2:
         """Return how far c0 and c1 of the unrolled surface lie from those given, mm."""
-        return tapering(self.kept) * self.sheet.neutral_mm(sign, self.k)
+        return neutral_mm(self.sheet, self.k, self.kept, sign)
 
 
 def sensitivity(bent: Bent) -> dict[str, object]:
@@ -93,12 +94,12 @@ RADIUS_STEP = 0.005
 """Half of the changes reported: lengths bend so little over them that half the step tells the same to some 1e-6."""
 
 
-def _row(flows: list[Flow], change: Callable[[float], Change], step: float, unit: float) -> dict[str, object]:
-    """Return the change of each dimension per `unit`, and the difference to that by half the step."""
+def _row(flows: list[Flow], change: Callable[[float], Change], step: float, per: float) -> dict[str, object]:
+    """Return the change of each dimension per so much of what changes, and the difference to that by half the step."""
 
     def slope(by: float) -> Values:
         difference: Values = dimensions(flows, change(by)) - dimensions(flows, change(-by))
-        return difference * (unit / (2.0 * by))
+        return difference * (per / (2.0 * by))
 
     coarse, fine = slope(step), slope(step / 2.0)
     row: dict[str, object] = dict(zip(DIMENSIONS, fine.tolist(), strict=True))
@@ -110,7 +111,7 @@ def _row(flows: list[Flow], change: Callable[[float], Change], step: float, unit
 
 def _flow(piece: PatchTurning, stretch: Stretch) -> Flow:
     patch, width = piece.patch, stretch.high - stretch.low
-    scale = float(norm(patch.p.jet(np.array([0.0, 0.5, 1.0]), 0)[0]).max())
+    scale = longest_ruling(patch)
 
     def sample(x: Values) -> Array:
         v = stretch.low + width * x
@@ -162,25 +163,18 @@ def _laid(flow: Flow, change: Change, phi0: float, q0: Vector2) -> tuple[Vector3
     area = flow.length * (across + across_p / 2.0)
     made = np.array([(weights * figure).sum() for figure in (*speeds, area)])
     phi = _chained((half * turn)[..., None], np.array([phi0]))[..., 0]
-    e, e_perp = _axes(phi @ AT_NODES.T)
+    e, e_perp = axes(phi @ AT_NODES.T)
     velocity = half[..., None] * (flow.along[..., None] * e + across[..., None] * e_perp)
     c0 = np.einsum("sk,pkc->psc", SHOWN, _chained(velocity, q0))
     length = _chained((half * flow.along_p)[..., None], flow.ends[:1])[..., 0] @ SHOWN.T
-    c1 = c0 + length[..., None] * _axes(phi @ SHOWN.T)[0]
+    c1 = c0 + length[..., None] * axes(phi @ SHOWN.T)[0]
     outline: Points2 = np.concatenate([c0, c1]).reshape(-1, 2)
     return made, outline, float((phi @ SHOWN.T)[-1, -1]), c0[-1, -1]
-
-
-def _axes(phi: Array) -> tuple[Array, Array]:
-    """Return the directions along and across the rulings at angles phi, shape (..., 2)."""
-    c, s = np.cos(phi), np.sin(phi)
-    return np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)
 
 
 def _chained(rates: Array, start: Values) -> Array:
     """Return the series of the integrals of rates (m, 16, c) on all panels, each begun where the one before ends."""
     series = np.einsum("lk,pkc->plc", ANTIDERIVATIVE, quadrature.coefficients(rates))
-    ends = series.sum(axis=1)
-    series[:, 0] += np.concatenate([np.zeros((1, start.size)), np.cumsum(ends, axis=0)[:-1]]) + start
+    series[:, 0] += quadrature.beginnings(series, start)
     chained: Array = series
     return chained

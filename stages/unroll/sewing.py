@@ -34,7 +34,9 @@ from stages.unroll.stitches import Stitches, pricked
 from stages.unroll.webs import judged
 
 LOOKS = 17
+"""Points of each edge, its ends among them: an edge widened wrongly is wrong over more than a sixteenth of it."""
 ROUNDING_MM = 1e-9
+"""Of a depth and an allowance that were typed alike."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 
 from stages.geometry import quadrature
 from stages.geometry.arrays import Array, Values, Vector2, cross2, dot, norm
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled import RuledPatch, longest_ruling
 from stages.unroll.nodes import ACROSS_WEIGHTS, PieceNodes
 
 
@@ -74,7 +74,7 @@ def _figures(patch: RuledPatch) -> Array:
     """
     u = (GAUSS + 1.0) / 2.0
     squares = np.stack([(1.0 - u) ** 2, 2.0 * u * (1.0 - u), u**2])
-    scale = float(norm(patch.p.jet(np.array([0.0, 0.5, 1.0]), 0)[0]).max())
+    scale = longest_ruling(patch)
 
     def sample(v: Values) -> Array:
         p, c0_d1, c1_d1 = patch.p.jet(v, 0)[0], patch.c0.jet(v, 1)[1], patch.c1.jet(v, 1)[1]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from stages.geometry.arrays import Array, ArrayValue, Matrix, Points2, Values, dot, norm
+from stages.geometry.arrays import Array, ArrayValue, Matrix, Points2, Values, dot, norm, similarities
 from stages.geometry.flatmap import Development, FlatPiece
 from stages.model.surface import RuledSurface
 from stages.unroll.nodes import ACROSS, ALONG, PieceNodes, at_nodes
@@ -94,8 +94,7 @@ def principal(piece: FlatPiece, flat_u: Points2, flat_v: Points2, u: Values, v: 
     clear &= aside > CLEAR * norm(s_v).max()
     f_e = flat_u / np.where(clear, length, 1.0)[:, None]
     f_w = (flat_v - along[:, None] * f_e) / np.where(clear, aside, 1.0)[:, None]
-    similar = np.hypot(f_e[:, 0] + f_w[:, 1], f_e[:, 1] - f_w[:, 0]) / 2.0
-    mirrored = np.hypot(f_e[:, 0] - f_w[:, 1], f_e[:, 1] + f_w[:, 0]) / 2.0
+    similar, mirrored = similarities(f_e, f_w)
     # of J J^T, whose eigenvectors are the principal directions in the pattern
     skew, difference = 2.0 * dot(f_e[:, :1], f_e[:, 1:]) + 2.0 * dot(f_w[:, :1], f_w[:, 1:]), _squares(f_e, f_w)
     direction = np.where(mirrored > ALIKE, np.arctan2(skew, difference) / 2.0, 0.0)

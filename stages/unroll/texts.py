@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from stages.geometry import clearance
+from stages.geometry import clearance, enclosed
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2
 from stages.geometry.clearance import Pieces
@@ -59,8 +59,8 @@ def _clear(text: Text, share: float, path: Pieces, *, hole: bool) -> bool:
     if clearance.clearance(box, path, within=0.0) == 0.0:
         return False
     # a corner may lie on a chord of the contour, not most of them
-    inside = 2 * np.count_nonzero(clearance.inside(corners, path)) > len(corners)
-    around = clearance.inside(path.start[:1], box).any()
+    inside = 2 * np.count_nonzero(enclosed.inside(corners, path)) > len(corners)
+    around = enclosed.inside(path.start[:1], box).any()
     return bool(not inside and not around if hole else inside)
 
 

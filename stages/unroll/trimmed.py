@@ -12,7 +12,6 @@ Not for a loop that goes round a seam: cut it there first.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -20,9 +19,10 @@ from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Values, Vector2, cross2, norm
 from stages.geometry.differentiation import matrix
 from stages.geometry.flatmap import Development
-from stages.geometry.mapped import LEAST_STRETCH, FlatStrip, MappedEdge, backwards, images
+from stages.geometry.mapped import FlatStrip, MappedEdge, backwards, images
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.quadrature import NODES, WEIGHTS
+from stages.geometry.ruled import longest_ruling
 from stages.geometry.strip import Strip, jet
 from stages.model.pattern import Contour
 from stages.model.report import Metric
@@ -127,9 +127,9 @@ def _on_surface(edge: MappedEdge, strip: Strip) -> tuple[Values, Array]:
 
     All stretches between breaks of the curve are integrated at once, each as a channel of its own.
     """
-    stops = _stops(edge)
+    stops = edge.breaks
     width = np.diff(stops)
-    scale = float(norm(strip.patches[0].p.jet(np.array([0.0, 0.5, 1.0]), 0)[0]).max())
+    scale = longest_ruling(strip.patches[0])
 
     def sample(share: Values) -> Array:
         t = (stops[:-1] + share[:, None] * width).ravel()
@@ -141,24 +141,6 @@ def _on_surface(edge: MappedEdge, strip: Strip) -> tuple[Values, Array]:
     sums = np.einsum("p,j,pjc->c", np.diff(shares) / 2.0, WEIGHTS, values).reshape(-1, 2).sum(axis=0)
     breaks = (stops[:-1, None] + shares[:-1] * width[:, None]).ravel()
     return np.append(breaks, 1.0), sums * np.array([1.0, scale])
-
-
-def _stops(edge: MappedEdge) -> Values:
-    """Return 0, the t at which the curve of an edge has breaks, and 1."""
-    if not isinstance(edge.curve, Piecewise):
-        return np.array([0.0, 1.0])
-    inner = (edge.curve.breaks - edge.low) / (edge.high - edge.low)
-    return np.concatenate([[0.0], np.sort(inner[(inner > LEAST_STRETCH) & (inner < 1.0 - LEAST_STRETCH)]), [1.0]])
-
-
-@runtime_checkable
-class Piecewise(PlaneCurve, Protocol):
-    """A curve that is smooth to some order only at its breaks, which are values of t from 0 to 1."""
-
-    @property
-    def breaks(self) -> Values:
-        """Where it is not smooth."""
-        ...
 
 
 def _rates(edge: MappedEdge, strip: Strip, t: Values) -> Array:

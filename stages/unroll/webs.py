@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry import arcpath, bridges, clearance
+from stages.geometry import arcpath, bridges, clearance, enclosed
 from stages.geometry.arrays import Array, Mask
 from stages.geometry.beside import ROUND
 from stages.geometry.bridges import Bridge
@@ -112,7 +112,7 @@ def _holds(around: Pieces, hole: Contour) -> bool:
     """Return whether a contour that crosses nothing is inside, by most of its points: some might lie on a chord."""
     count = arcpath.piece_count(hole.path)
     piece, share = np.repeat(np.arange(count), len(SOMEWHERE)), np.tile(SOMEWHERE, count)
-    held: Mask = clearance.inside(arcpath.along(hole.path, piece, share), around)
+    held: Mask = enclosed.inside(arcpath.along(hole.path, piece, share), around)
     return bool(2 * np.count_nonzero(held) > held.size)
 
 

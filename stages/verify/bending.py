@@ -9,6 +9,7 @@ Folds between patches have no radius of their own and do not count.
 """
 
 from dataclasses import dataclass
+from math import inf, isfinite
 
 from stages.errors import NoSolutionError
 from stages.geometry.planarity import is_planar
@@ -79,7 +80,7 @@ def judged_bend(found: Sharpest, material: Material) -> tuple[tuple[Metric, Metr
 def _metrics(found: Sharpest, bend: Sharpest | None, material: Material) -> tuple[Metric, Metric]:
     """Return the inside radius of the sharpest bend, and the strain of that which is judged (None: no strain)."""
     strain = None if bend is None or material.thickness_mm is None else _strain(material.thickness_mm, bend.middle_mm)
-    shown = strain if strain is not None and strain < float("inf") else None
+    shown = strain if strain is not None and strain < inf else None
     return (
         Metric("min_bend_radius_mm", max(found.inside_mm, 0.0), "mm", "sampled", None, found.where),
         Metric("outer_fibre_strain", shown, "", "sampled", material.max_strain, None if bend is None else bend.where),
@@ -147,11 +148,14 @@ def _unsigned(surface: RuledSurface, thickness: float) -> Sharpest | None:
     if worst.value * surface.size_mm <= STRAIGHT:
         return None
     radius = 1.0 / worst.value
-    return Sharpest.at(radius, radius, radius - thickness / 2.0, worst.where)
+    where: Where = {"v": surface.v_of(worst.piece, worst.v)}
+    if worst.u is not None:
+        where["u"] = worst.u
+    return Sharpest.at(radius, radius, radius - thickness / 2.0, where)
 
 
 def _strain(thickness: float, middle_mm: float) -> float:
-    return thickness / (2.0 * middle_mm) if middle_mm > 0.0 else float("inf")
+    return thickness / (2.0 * middle_mm) if middle_mm > 0.0 else inf
 
 
 def _radius_findings(inside: float, material: Material, found: Sharpest) -> list[Finding]:
@@ -171,7 +175,8 @@ def _radius_findings(inside: float, material: Material, found: Sharpest) -> list
 def _strain_findings(strain: float | None, material: Material, where: Where) -> list[Finding]:
     if material.max_strain is None or strain is None or strain <= material.max_strain:
         return []
-    message = f"the outer fibre stretches by {strain:.3%}, the material allows {material.max_strain:.3%}"
+    by = f"by {strain:.3%}" if isfinite(strain) else "without bound (the middle of the sheet has no radius left)"
+    message = f"the outer fibre stretches {by}, the material allows {material.max_strain:.3%}"
     return [Finding("bend-strain", message, True, where)]
 
 

@@ -112,6 +112,6 @@ FOLDED_DEG = 90.0
 def _crossing(surface: RuledSurface, warp: Metric) -> str:
     """Return where the edge of regression crosses the worst ruling, if it is known and crosses it inside."""
     v = float((warp.where or {}).get("v", 0.0))
-    piece = min(int(v), len(surface.patches) - 1)
-    u = float(regression(frames(surface.patches[piece], np.array([v - piece])))[0])
+    piece, local = surface.place_of(v)
+    u = float(regression(frames(surface.patches[piece], np.array([local])))[0])
     return f" (at u = {u:.4g}, v = {v:.4g})" if 0.0 <= u <= 1.0 else ""

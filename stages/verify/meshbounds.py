@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arap import strain_tensors
-from stages.geometry.arrays import ArrayValue, Indices, Points2, Values
+from stages.geometry.arap import Sheet, strain_tensors
+from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcurvature import Regions, defects, means, regions, ruling_lengths, shares, spread
 from stages.geometry.meshfit import DEGREE, WIDE_DEGREE, Stars, SurfaceFit, fitted, stars
@@ -47,6 +47,11 @@ class Bound:
     value: float
     largest: float
     vertex: int | None = None
+
+    @property
+    def values(self) -> tuple[float, float, float]:
+        """Return the least, the likely and the largest value."""
+        return self.least, self.value, self.largest
 
 
 UNKNOWN = Bound(0.0, np.inf, np.inf)
@@ -142,21 +147,39 @@ def _noisier(studied: Studied) -> Mesh:
     return Mesh(studied.mesh.vertices + heights[:, None] * studied.fit.normals, studied.mesh.faces)
 
 
-def strain(studied: Studied) -> Bound:
-    """Return the largest principal strain, averaged over cells of many triangles."""
-    mesh, flat = studied.mesh, studied.flat
-    rest = resting(mesh, studied.edges, flat.lengths)
-    tensors = strain_tensors(rest, flat.positions)
-    cell = cells(flat.positions[mesh.faces].mean(axis=1), CELL)
+@dataclass(frozen=True, slots=True, eq=False)
+class CellStrains(ArrayValue):
+    """Strain averaged over cells of triangles.
+
+    size: the larger principal strain of each cell, (c,).  doubt: `DEVIATIONS` standard errors of it, (c,).
+    cell: of each triangle, (m,).
+    """
+
+    size: Array
+    doubt: Array
+    cell: Indices
+
+
+def cell_strains(rest: Sheet, positions: Points2) -> CellStrains:
+    """Return the strain of triangles laid flat, averaged over cells of many."""
+    tensors = strain_tensors(rest, positions)
+    cell = cells(positions[rest.faces].mean(axis=1), CELL)
     count = np.bincount(cell)
     weight = rest.area / np.bincount(cell, rest.area)[cell]
     mean = np.stack([np.bincount(cell, weight * part) for part in tensors.T], axis=1)
     away = ((tensors - mean[cell]) ** 2).sum(axis=1)
     error = np.sqrt(np.bincount(cell, away) / np.maximum(count - 1, 1) / count)
     size = np.abs((mean[:, 0] + mean[:, 2]) / 2.0) + np.hypot((mean[:, 0] - mean[:, 2]) / 2.0, mean[:, 1])
-    worst = int(np.argmax(size))
-    doubt = DEVIATIONS * error + _chord_error(studied) + _lengthening(studied)
-    vertex = int(mesh.faces[np.flatnonzero(cell == worst)[0], 0])
+    return CellStrains(size, DEVIATIONS * error, cell)
+
+
+def strain(studied: Studied) -> Bound:
+    """Return the largest principal strain, averaged over cells of many triangles."""
+    mesh, flat = studied.mesh, studied.flat
+    found = cell_strains(resting(mesh, studied.edges, flat.lengths), flat.positions)
+    size, worst = found.size, int(np.argmax(found.size))
+    doubt = found.doubt + _chord_error(studied) + _lengthening(studied)
+    vertex = int(mesh.faces[np.flatnonzero(found.cell == worst)[0], 0])
     return Bound(max(float((size - doubt).max()), 0.0), float(size[worst]), float((size + doubt).max()), vertex)
 
 

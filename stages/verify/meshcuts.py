@@ -15,23 +15,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.arap import settled, strain_tensors
+from stages.geometry.arap import settled
 from stages.geometry.arapkept import settled_with
 from stages.geometry.arrays import Array, Numbers, Points2, Points3, norm
 from stages.geometry.intrinsic import laid
 from stages.geometry.meshcurvature import defects
 from stages.geometry.meshcut import along, shortest
 from stages.geometry.meshflat import by_side, resting
-from stages.geometry.meshslit import on_border, slit
-from stages.geometry.meshtopology import boundary_loops, edge_numbers, edges_of
+from stages.geometry.meshslit import slit
+from stages.geometry.meshtopology import boundary_loops, edge_numbers, edges_of, on_border
 from stages.geometry.scalefactor import scale_factors
 from stages.model.report import Finding, Where
 from stages.model.surface import MeshSurface, no_pairs
 from stages.model.tolerances import STRAIN_LIMIT
-from stages.verify.meshbounds import CELL, DEVIATIONS, Studied, cells
+from stages.verify.meshbounds import Studied, cell_strains
 from stages.verify.meshstudy import ties_of
 
 MOST_CUTS = 3
+"""More than a person would sew without drawing a pattern of their own."""
 BUDGET = 60_000
 """Triangles that are flattened for one cut, all places tried together: some 4 s."""
 MOST_TRIED = 6
@@ -42,7 +43,7 @@ ROUGH = 1e-6
 """How far a trial's last step may move a vertex, as a share of the size: strains to 1e-5."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Cut:
     """A mesh with cuts, flat.
 
@@ -66,7 +67,6 @@ def suggested(surface: MeshSurface, studied: Studied) -> tuple[Finding, ...]:
     limit = STRAIN_LIMIT["leather"]
     base = replace(surface, kept=no_pairs())
     flat = studied.flat
-    flat = studied.flat
     now = _Cut(base, (), (), flat.lengths, flat.positions, *_strain(base, flat.lengths, flat.positions))
     first, opens = now.strain, True
     for _ in range(MOST_CUTS):
@@ -84,16 +84,8 @@ def suggested(surface: MeshSurface, studied: Studied) -> tuple[Finding, ...]:
 def _strain(surface: MeshSurface, lengths: Array, positions: Points2) -> tuple[float, float]:
     """Return the largest principal strain averaged over cells of triangles, and the largest that it may be."""
     mesh = surface.mesh
-    rest = resting(mesh, edges_of(mesh), lengths)
-    cell = cells(positions[mesh.faces].mean(axis=1), CELL)
-    tensors = strain_tensors(rest, positions)
-    total, count = np.bincount(cell, rest.area), np.bincount(cell)
-    mean = np.stack([np.bincount(cell, rest.area * part) / total for part in tensors.T], axis=1)
-    away = np.bincount(cell, ((tensors - mean[cell]) ** 2).sum(axis=1))
-    xx, xy, yy = mean.T
-    size = np.abs(xx + yy) / 2.0 + np.hypot((xx - yy) / 2.0, xy)
-    doubt = DEVIATIONS * np.sqrt(away / np.maximum(count - 1, 1) / count)
-    return float(size.max()), float((size + doubt).max())
+    found = cell_strains(resting(mesh, edges_of(mesh), lengths), positions)
+    return float(found.size.max()), float((found.size + found.doubt).max())
 
 
 def _tip(cut: _Cut) -> tuple[int, bool]:
@@ -123,11 +115,12 @@ def _tried(base: MeshSurface, lengths: Array, cut: _Cut, tip: int) -> Iterator[_
 
 
 def _decimals(size_mm: float) -> int:
-    """Return how many decimals of a millimetre tell places to a hundred thousandth of the size."""
+    """Return how many decimals of a millimetre tell places to that share of the size."""
     return max(int(np.ceil(DIGITS - np.log10(size_mm))), 0)
 
 
 DIGITS = 5
+"""Decimals of a size of 1: a hundred thousandth is finer than any cloth is marked, and short enough to be typed."""
 
 
 def _spread(count: int) -> Numbers:

@@ -128,7 +128,7 @@ def _regions(surface: MeshSurface, read: Curvatures) -> Iterator[dict[str, objec
 
 
 def _judged(surface: MeshSurface, studied: Studied, bent: Bound, strained: Bound, tol: Tolerances) -> Verdict:
-    best, likely, worst = (_class(getattr(bent, at), getattr(strained, at)) for at in ("least", "value", "largest"))
+    best, likely, worst = (_class(*both) for both in zip(bent.values, strained.values, strict=True))
     metrics = _metrics(surface, studied, bent, strained, tol)
     if worst is not None and tol.accepts(worst):
         return Verdict(metrics, (), likely or worst, studied.flat)
@@ -221,7 +221,8 @@ def _remedy(strained: Bound, tol: Tolerances) -> str:
 def _doubt(surface: MeshSurface, studied: Studied, bent: Bound, strained: Bound, tol: Tolerances) -> Finding:
     """Return why no verdict is possible, and the best class that the mesh permits one for."""
     permits = _class(bent.largest, strained.largest)
-    cause = "noisy" if np.median(studied.fit.coarser / studied.fit.residual) < NOISE else "coarse"
+    fit = studied.fit
+    cause = "noisy" if np.median(fit.coarser - NOISE * fit.residual) < 0.0 else "coarse"
     message = (
         f"the mesh is too {cause} for a verdict at accept = {tol.accept!r}: vertices lie "
         f"{studied.flat.noise_mm:.3g} mm off a smooth surface; equivalent warp between {bent.least * DEG:.3g} and "

@@ -4,14 +4,11 @@ import numpy as np
 
 from stages.geometry.arrays import Array, Numbers
 from stages.geometry.meshfit import fitted, stars
-from stages.geometry.meshflat import at_rest, edge_lengths, noise
+from stages.geometry.meshflat import AT_REST, at_rest, edge_lengths, noise
 from stages.geometry.meshtopology import Edges, edge_numbers, edges_of
 from stages.geometry.ties import Ties, equal, kept, together
 from stages.model.surface import MeshSurface
 from stages.verify.meshbounds import Studied
-
-AT_REST = 1e-10
-"""The last step of the flattening, relative to the size of the part."""
 
 
 def study(surface: MeshSurface) -> Studied:

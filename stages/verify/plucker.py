@@ -8,7 +8,7 @@ powers of the weights (w0 of c0, w1 of c1) left out
     n0 ~ M0 = A1 x d0 - w1 m0,         n1 ~ M1 = w0 m1 - A0 x d1,
     c0' ~ d0,                          c1' ~ d1,
 
-    |p x ...|: tan(warp) = |P| |Delta| / (M0 . M1),     sqrt|K| = |Delta| wi^2 / |Mi|^2  along edge i.
+    tan(warp) = |P| |Delta| / (M0 . M1),     sqrt|K| = |Delta| wi^2 / |Mi|^2  along edge i.
 
 Both are free of scale.  With w = 1 these are the plain formulas.  A common factor of the three components of P, Mi or
 di is where the ruling has no length, the normal vanishes, or the directrix stops; it is divided out, so that what is

@@ -93,6 +93,7 @@ def _size(top: Array, below: Array, v: Values) -> Values:
 STEPS = np.concatenate([-(0.5 ** np.arange(1, 53)), [0.0], 0.5 ** np.arange(1, 53)])
 """From the whole interval to the spacing of the doubles: a peak may be of any width."""
 CLIMBS = 40
+"""Each step leaves at most half of the way to the peak: after so many none is left."""
 
 
 def _climbed(quotient: Callable[[Values], Values], v: float) -> float:

@@ -5,6 +5,7 @@ Each is the extreme of a smooth function of v found by `extremum.maxima`, on bot
 """
 
 from dataclasses import dataclass
+from math import inf, pi
 
 import numpy as np
 
@@ -21,30 +22,23 @@ from stages.geometry.ruled import (
     turn_rate,
     warp_of,
 )
-from stages.model.report import Where
 
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """A value and the piece, v and u where it is reached."""
+    """A value and the piece, v on it and u where it is reached."""
 
     value: float
     piece: int
     v: float
     u: float | None = None
 
-    @property
-    def where(self) -> Where:
-        """Return the place for a report; v counts on over the pieces."""
-        place: Where = {"v": self.piece + self.v}
-        return place if self.u is None else place | {"u": self.u}
-
 
 @dataclass(frozen=True, slots=True)
 class Survey:
     """How far a patch is from developable, and where it is nearest to having no tangent plane.
 
-    warp: the largest, rad.  gaussian: the largest |K|, 1/mm2.
+    warp: the largest, rad; pi where no ruling has a normal.  gaussian: the largest |K|, 1/mm2.
     ruling: the shortest ruling strictly inside, mm; the ends may be apexes.
     normal: the least |n(1/2)| / (|p| max|c'|) strictly inside: 0 where a ruling is along the directrix.
     regular: whether neither end normal vanishes anywhere, ends included, as far as samples show.
@@ -67,7 +61,7 @@ def survey(patch: RuledPatch, piece: int) -> Survey:
 
     warp, gaussian, ruling, normal, weakest = maxima(figures)
     return Survey(
-        Extreme(max(warp[0], 0.0), piece, warp[1]),
+        Extreme(max(warp[0], 0.0), piece, warp[1]) if warp[0] > -inf else Extreme(pi, piece, 0.5),
         Extreme(max(gaussian[0], 0.0), piece, gaussian[1]),
         Extreme(-ruling[0], piece, ruling[1]),
         Extreme(-normal[0], piece, normal[1]),
@@ -120,8 +114,8 @@ def turning(patch: RuledPatch) -> float:
     Raises NoSolutionError where the turning does not resolve: a patch that folds.
     """
 
-    def rate(v: Values) -> np.ndarray:
-        rate = turn_rate(frames(patch, v))
-        return np.stack([rate, np.ones_like(rate)], axis=1)  # the second channel sets the scale: 1 rad
+    def rates(v: Values) -> Array:
+        turning = turn_rate(frames(patch, v))
+        return np.stack([turning, np.ones_like(turning)], axis=1)  # the second channel sets the scale: 1 rad
 
-    return float(integral(rate, "turning of the rulings")[0])
+    return float(integral(rates, "turning of the rulings")[0])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from stages.geometry.bernstein import Polynomial, multiply
-from stages.geometry.factors import Interval, multiplicity, roots_inside, square_free
+from stages.geometry.factors import Interval, leading_zeros, multiplicity, roots_inside, square_free
 from stages.verify.plucker import Ingredients
 
 Sort = Literal["zero-ruling", "cusp", "singular-ruling", "edge-of-regression", "touch", "stop", "tangent-ruling"]
@@ -74,7 +74,7 @@ def regular_at_ends(made: Ingredients) -> bool:
     if all(f.scaled[0] and f.scaled[-1] for f in normals):
         return True
     for step in (1, -1):
-        p, s0, s1, n0, n1 = (_leading_zeros(f.scaled[::step]) for f in factors)
+        p, s0, s1, n0, n1 = (leading_zeros(f.scaled[::step]) for f in factors)
         if (n0 or n1) and not Orders(p, (s0, s1), (n0, n1)).merely_stops:
             return False
     return True
@@ -84,10 +84,6 @@ def _normal_factors(made: Ingredients) -> tuple[Polynomial, Polynomial]:
     """Return the factors of both normals; one that is nowhere defined takes that of the other."""
     n0, n1 = made.normals
     return (n1 if n0.is_zero else n0).factor, (n0 if n1.is_zero else n1).factor
-
-
-def _leading_zeros(row: tuple[int, ...]) -> int:
-    return next(i for i, c in enumerate(row) if c)
 
 
 def _sort(orders: Orders) -> Sort:

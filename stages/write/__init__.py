@@ -4,8 +4,8 @@
 the text again, `faults` and `compare` judge it.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 from stages.geometry.compensation import Fit
 from stages.model.cutfile import CutFile, Machine
@@ -35,12 +35,38 @@ REMNANTS = Machine(flavour="r12", version="R12")
 """How the drawings of remnants are written beside pattern files, which are R12 too."""
 
 
-def write(patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Machine) -> Outcome[tuple[CutFile, ...]]:
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """One file as it was read back: the text it was made of, what was found, measured and counted in it."""
+
+    text: str
+    findings: tuple[Finding, ...]
+    comparison: Comparison
+    fits: tuple[Fit, ...]
+    entities: int
+    figures: dict[str, float]
+    sides: object | None
+    by_part: object | None
+
+
+Each = Callable[[Callable[[int], Judged], int], Iterable[Judged]]
+"""How a call is made for each file, by its number: here, or by others."""
+
+
+def in_turn(call: Callable[[int], Judged], count: int) -> Iterable[Judged]:
+    """Make the calls one after the other."""
+    return map(call, range(count))
+
+
+def write(
+    patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Machine, each: Each = in_turn
+) -> Outcome[tuple[CutFile, ...]]:
     """Return `flat/<part>.dxf` of every pattern and, of a nest, the files in `cut/` that the machine wants, as text.
 
     What a sheet leaves in one piece is drawn in `remnants/<stock>-<n>.dxf`.
 
     Every file has been read back: its faults are findings, and a fatal one means that nothing may be cut from it.
+    each: how the files are made, each by itself.
     """
     patterns = [as_cut(pattern, machine) for pattern in patterns]
     if machine.flavour == "aama":
@@ -54,8 +80,9 @@ def write(patterns: Sequence[FlatPattern], nesting: Nesting | None, machine: Mac
     drawings += [helped(drawing, cutting) for drawing in cut_drawings(layouts, of_beams, cutting)]
     shown = pictured(drawings, machine)
     drawings += remnant_drawings(layouts)
-    files = tuple(CutFile(drawing.path, dxf_text(drawing, machine.of_file(drawing.path))) for drawing in drawings)
-    report = judged(files, drawings, by_part, machine)
+    found = list(each(lambda number: made(drawings[number], by_part, machine), len(drawings)))
+    files = tuple(CutFile(drawing.path, one.text) for drawing, one in zip(drawings, found, strict=True))
+    report = reported(drawings, found)
     told = (*clipped_texts(patterns, layouts, machine), *report.findings, *narrow, *shown.findings)
     report = replace(report, findings=told)
     if machine.file_per == "material" and layouts:
@@ -95,34 +122,57 @@ def judged(
     machine: Machine = DEFAULT,
 ) -> StageReport:
     """Return the report on files as read back from their text."""
-    findings: list[Finding] = []
-    comparisons: list[Comparison] = []
-    figures: dict[str, object] = {}
-    sides: dict[str, object] = {}
-    by_part: dict[str, object] = {}
-    beside: list[Fit] = []
-    entities = 0
-    for file, drawing in zip(files, drawings, strict=True):
-        back = read(file.text, machine.of_file(file.path).layers)
-        whole = replace(back, entities=bridged(back.entities, drawing.helps.gap_mm))
-        closed = None if drawing.kerf_mm is None else closed_again(whole.entities, drawing.kerf_mm)
-        comparison = compared(back, drawing, patterns if drawing.path.startswith("flat/") else {}, closed)
-        findings += faults(whole, file.path, comparison.shortest_mm, _chord(drawing, patterns), closed)
-        found = help_figures(back, whole, drawing)
-        beside += found.fits
-        findings += (*drawing.told, *found.findings)
-        findings += comparison.findings
-        findings += common_lines(back, closed, file.path) if closed else ()
-        comparisons.append(comparison)
-        figures[file.path] = cut_figures(back)
-        if not any(finding.fatal for finding in comparison.findings):
-            sides[file.path] = measured_file(back, drawing, machine.of_file(file.path).layers)
-            if drawing.helps.any and drawing.kerf_mm is None:
-                by_part[file.path] = cuts_of_parts(back, drawing)
-        entities += sum(entity.count for entity in back.entities)
-    detail: dict[str, object] = {"files": figures, "sides": sides, **({"parts": by_part} if by_part else {})}
-    measured = (*metrics(comparisons, entities), *offset_metrics(beside))
-    return StageReport("write", "cut files", measured, tuple(findings), detail)
+    pairs = zip(files, drawings, strict=True)
+    return reported(drawings, [judge(file.text, drawing, patterns, machine) for file, drawing in pairs])
+
+
+def made(drawing: Drawing, patterns: dict[str, FlatPattern], machine: Machine) -> Judged:
+    """Return the file of a drawing, read back."""
+    return judge(dxf_text(drawing, machine.of_file(drawing.path)), drawing, patterns, machine)
+
+
+def judge(text: str, drawing: Drawing, patterns: dict[str, FlatPattern], machine: Machine) -> Judged:
+    """Return a file as read back from its text."""
+    layers = machine.of_file(drawing.path).layers
+    back = read(text, layers)
+    whole = replace(back, entities=bridged(back.entities, drawing.helps.gap_mm))
+    closed = None if drawing.kerf_mm is None else closed_again(whole.entities, drawing.kerf_mm)
+    comparison = compared(back, drawing, patterns if drawing.path.startswith("flat/") else {}, closed)
+    helps = help_figures(back, whole, drawing)
+    findings = (
+        *faults(whole, drawing.path, comparison.shortest_mm, _chord(drawing, patterns), closed),
+        *drawing.told,
+        *helps.findings,
+        *comparison.findings,
+        *(common_lines(back, closed, drawing.path) if closed else ()),
+    )
+    as_drawn = not any(finding.fatal for finding in comparison.findings)
+    alone = as_drawn and drawing.helps.any and drawing.kerf_mm is None
+    return Judged(
+        text,
+        findings,
+        comparison,
+        helps.fits,
+        sum(entity.count for entity in back.entities),
+        cut_figures(back),
+        measured_file(back, drawing, layers) if as_drawn else None,
+        cuts_of_parts(back, drawing) if alone else None,
+    )
+
+
+def reported(drawings: Sequence[Drawing], found: Sequence[Judged]) -> StageReport:
+    """Return the report on files as they were read back."""
+    by_path = {drawing.path: one for drawing, one in zip(drawings, found, strict=True)}
+    by_part = {path: one.by_part for path, one in by_path.items() if one.by_part is not None}
+    detail: dict[str, object] = {
+        "files": {path: one.figures for path, one in by_path.items()},
+        "sides": {path: one.sides for path, one in by_path.items() if one.sides is not None},
+        **({"parts": by_part} if by_part else {}),
+    }
+    comparisons = [one.comparison for one in found]
+    entities = sum(one.entities for one in found)
+    measured = (*metrics(comparisons, entities), *offset_metrics([fit for one in found for fit in one.fits]))
+    return StageReport("write", "cut files", measured, tuple(line for one in found for line in one.findings), detail)
 
 
 def _chord(drawing: Drawing, patterns: dict[str, FlatPattern]) -> float:

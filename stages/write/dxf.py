@@ -1,4 +1,4 @@
-"""A drawing as DXF text: the only place that writes the format; `entities` has its flavours.
+"""A drawing as DXF text: the only place that writes the format; `records` has its entities, in all flavours.
 
 Millimetres in every header variable that bears on units, in every version: R12 has not all of them, and the two that
 readers look for are put into it.  Colour is written on each entity as well as on its layer.  No blocks, no splines.
@@ -10,16 +10,19 @@ all tags of the text are looked through, since ezdxf would write `nan`.
 
 import re
 from io import StringIO
+from itertools import count
 from math import isfinite
 
 import numpy as np
 from ezdxf.document import Drawing as Document
 from ezdxf.lldxf.tagwriter import TagWriter
 from ezdxf.sections.classes import REQ_R2004, REQUIRED_CLASSES
+from ezdxf.tools.handle import HandleGenerator
 
 from stages.model.cutfile import Machine
 from stages.write.drawing import Drawing, extent
-from stages.write.entities import DECIMALS, add_label, add_path, rounded
+from stages.write.entities import DECIMALS, rounded
+from stages.write.records import Form, records
 
 MILLIMETRES, METRIC, DECIMAL_UNITS = 4, 1, 2
 UNIT_VARIABLES: dict[str, float] = {
@@ -52,6 +55,8 @@ LAYOUT_BLOCK = re.compile(
 """The empty block of a layout, which R12 does not need, and for which a reader of today gives up."""
 
 BEFORE = "  9\n$LUNITS\n"
+ENTITIES = "  0\nSECTION\n  2\nENTITIES\n"
+HEXADECIMAL = 16
 
 NUMBERS = ((10, 59), (110, 149), (210, 239), (460, 469), (1010, 1059))
 """Group codes of floating-point numbers, first and last."""
@@ -79,14 +84,13 @@ def dxf_text(drawing: Drawing, machine: Machine) -> str:
     for layer in machine.layers.values():
         if layer.name not in document.layers:
             document.layers.add(layer.name, color=layer.colour)
-    space = document.modelspace()
-    for item in drawing.items:
-        add_path(space, item, machine)
-    for label in drawing.labels:
-        add_label(space, label, machine.layers[label.layer])
+    handles = count(int(str(document.entitydb.handles), HEXADECIMAL))
+    entities = records(drawing, Form(machine, document.modelspace().layout_key, handles))
+    document.entitydb.handles = HandleGenerator(f"{next(handles):X}")
     set_extents(document, extent(item.path for item in drawing.items))
     text = exported(document)
-    return in_r12(text) if machine.version == "R12" else text
+    before, place, after = (in_r12(text) if machine.version == "R12" else text).partition(ENTITIES)
+    return finite("".join([before, place, entities, after]))
 
 
 def unit_variables(version: str) -> dict[str, float]:
@@ -147,13 +151,16 @@ def finite(text: str) -> str:
 
     Letters in a number are those of `nan` and `inf`, or an exponent: only values that have some are looked at.
     """
-    lines = text.splitlines()
-    for place, (code, value) in enumerate(zip(lines[::2], lines[1::2], strict=False)):
-        if value.isnumeric() or not holds_number(int(code)) or not any(map(str.isalpha, value)):
-            continue
-        if not isfinite(float(value)):
-            raise ValueError(f"line {2 * place + 2} of a cut file must be a finite number: {value.strip()}")
+    for tag in LETTERED.finditer(text):
+        code, value = tag.groups()
+        if holds_number(int(code)) and not isfinite(float(value)):
+            line = text.count("\n", 0, tag.start(2)) + 1
+            raise ValueError(f"line {line} of a cut file must be a finite number: {value.strip()}")
     return text
+
+
+LETTERED = re.compile(r"^ *([0-9]+)\n([^\n]*[A-Za-z][^\n]*)$", re.MULTILINE)
+"""A tag with a letter in its value: code and value.  No code has one, so this cannot begin at a value."""
 
 
 def holds_number(code: int) -> bool:

@@ -12,6 +12,7 @@ write.  The depth is positive, as Valentina has it; AccuMark writes it negative.
 
 import numpy as np
 from ezdxf.document import Drawing as Document
+from ezdxf.enums import TextEntityAlignment
 from ezdxf.layouts.base import BaseLayout
 
 from stages.geometry.arcpath import ArcPath
@@ -21,8 +22,10 @@ from stages.model.pattern import Traced
 from stages.model.patternlayers import BOUNDARY, CURVE, POINT_COLOUR, STANDARD, TURN, VALIDATION
 from stages.write.drawing import Label, extent
 from stages.write.dxf import exported, in_r12, set_extents
-from stages.write.entities import DECIMALS, Attributes, add_label, rounded
+from stages.write.entities import DECIMALS, rounded
 from stages.write.pieces import Line, PatternFile, Piece, Spot
+
+Attributes = dict[str, str | int]
 
 REFERENCED = 64
 """What programs write as the flags of a block that is inserted."""
@@ -105,10 +108,9 @@ def _add_spot(space: BaseLayout, spot: Spot) -> None:
 
 def _add_text(space: BaseLayout, label: Label, machine: Machine) -> None:
     """Add a text: one that has a key begins where it is put, an annotation has its middle there."""
-    if label.layer == "LABEL":
-        add_label(space, label, machine.layers[label.layer])
-        return
     x, y, height, angle = rounded(np.array([*label.at, label.height_mm, label.angle_deg]), DECIMALS)
     layer = machine.layers[label.layer]
     attributes: Attributes = {"layer": layer.name, "color": layer.colour}
-    space.add_text(label.text, height=height, dxfattribs={**attributes, "rotation": angle, "insert": (x, y)})
+    text = space.add_text(label.text, height=height, dxfattribs={**attributes, "rotation": angle, "insert": (x, y)})
+    if label.layer == "LABEL":
+        text.set_placement((x, y), align=TextEntityAlignment.MIDDLE_CENTER)

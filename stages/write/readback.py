@@ -8,7 +8,7 @@ neither (what does not belong into a cut file) by kind and layer.
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from io import StringIO
@@ -68,7 +68,7 @@ def _read(text: str, named: tuple[tuple[str, Layer], ...]) -> ReadFile:
     layers = dict(named)
     try:
         document = read_dxf(StringIO(text))
-        entities = chained([_meant(_entity(entity), layers) for entity in drawn(document, layers)])
+        entities = chained(_meant([_entity(entity) for entity in drawn(document, layers)], layers))
     except (DXFError, ValueError) as error:
         return ReadFile({}, (), {}, (f"cannot be read: {error}",))
     complaints = [f"{error.message}" for error in document.audit().errors]
@@ -78,12 +78,20 @@ def _read(text: str, named: tuple[tuple[str, Layer], ...]) -> ReadFile:
     return ReadFile(_header(document), entities, _colours(document, layers), tuple(complaints), version)
 
 
-def _meant(entity: Entity, layers: Mapping[str, Layer]) -> Entity:
-    """Return the entity on the layer that its layer's name means, and its colour where several share that name."""
-    named = [meaning for meaning, layer in layers.items() if layer.name.casefold() == entity.layer.casefold()]
-    coloured = [meaning for meaning in named if layers[meaning].colour == entity.colour]
-    meaning = coloured or named
-    return replace(entity, layer=meaning[0]) if meaning else replace(entity, layer=_foreign(entity.layer, layers))
+def _meant(entities: Sequence[Entity], layers: Mapping[str, Layer]) -> list[Entity]:
+    """Return entities on the layers that their layers' names mean, and their colours where several share a name."""
+    meaning = {said: _meaning(*said, layers) for said in {(one.layer, one.colour) for one in entities}}
+    return [
+        one if meaning[one.layer, one.colour] == one.layer else replace(one, layer=meaning[one.layer, one.colour])
+        for one in entities
+    ]
+
+
+def _meaning(name: str, colour: int, layers: Mapping[str, Layer]) -> str:
+    """Return what a layer of a file is in a colour."""
+    named = [meaning for meaning, layer in layers.items() if layer.name.casefold() == name.casefold()]
+    coloured = [meaning for meaning in named if layers[meaning].colour == colour]
+    return (coloured or named or [_foreign(name, layers)])[0]
 
 
 def _foreign(name: str, layers: Mapping[str, Layer]) -> str:

@@ -24,8 +24,8 @@ TWICE_LEAST = 2.0
 
 def starts(path: ArcPath, rule: StartRule | float) -> list[float]:
     """Return the places at which a closed path may begin, the best first, none twice."""
-    every = (settled(path, place, LEAST_PIECE_MM) % path.bulges.size for place in _candidates(path, rule))
-    return list(dict.fromkeys(every))
+    every = settled(path, np.array([*_candidates(path, rule)]), LEAST_PIECE_MM) % path.bulges.size
+    return list(dict.fromkeys(every.tolist()))
 
 
 def _candidates(path: ArcPath, rule: StartRule | float) -> Iterator[float]:
@@ -35,11 +35,11 @@ def _candidates(path: ArcPath, rule: StartRule | float) -> Iterator[float]:
     elif rule == "as-drawn":
         yield 0.0
     elif rule == "corner":
-        yield from (float(vertex) for vertex in corners(path)[:1])
+        yield from corners(path)[:1].tolist()
     elif rule in SIDES:
         yield float(_outermost(path, rule))
     yield from middles(path)
-    yield from (float(vertex) for vertex in corners(path))
+    yield from corners(path).tolist()
     yield 0.0
 
 

@@ -14,11 +14,12 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pipeline.batch import journal, told
+from pipeline.batch import children, journal, told
 from pipeline.batch.executor import Local
 from pipeline.batch.stopped import StoppedError
 from pipeline.batch.work import Record, Work
@@ -31,29 +32,37 @@ RUNNER_SHARE = 0.7
 """Of the kills that hit the runner; the others hit a worker."""
 BETWEEN_S = (0.0, 0.6)
 """Seconds between two kills, counted from when jobs run: a runner that is up for less would never get on."""
-EARLY_SHARE = 0.2
-"""Of the kills that do not wait for that, and hit a runner that is about to begin."""
+EARLY_SHARE = 0.3
+"""Of the kills of a runner: they do not wait for that, and hit one that is about to begin."""
 JOBS_A_KILL = 20
-JOB_S = 0.04
-"""Of one job: 20 of them on two workers take as long as a runner has between two kills."""
+JOB_S = 0.1
+"""Of one job while there are kills: two workers do about as many between two of them."""
+MARGIN = 100
+"""Jobs that are to be left for the next runner, or more are appended: what two workers do in 5 s."""
 END_S = 3600
 SIZES = (60_000, 3_000_000)
 """Bytes of the small disk: from too little for a journal to nearly enough for all."""
 LOG = "log"
+KILLING = "killing"
+"""A file that is there as long as there are kills: jobs take their time."""
+TOLD_EVERY = 50
 ROOM = 64_000_000
 
 
 def light(work: Work) -> Record:
-    """Take 40 ms for a job that is nothing else, and leave a line in a log that outlives everyone."""
+    """Take a while for a job that is nothing else, and leave a line in a log that outlives everyone."""
     draft = Path(work.draft)
-    with (draft.parents[2] / LOG).open("a") as log:
+    folder = draft.parents[2]
+    with (folder / LOG).open("a") as log:
         log.write(f"{draft.name.partition('-')[0]} {work.job}\n")
-    time.sleep(JOB_S)
+    if (folder / KILLING).exists():
+        time.sleep(JOB_S)
     return made(work)
 
 
 def serve(out: str, jobs: str) -> None:
-    """Be the runner that is killed."""
+    """Be the runner that is killed; its children load nothing, as their jobs are none."""
+    children.WARM = "tests.bench.cold"
     executor = Local(WORKERS, light)
     go_through(executor, Path(out), Path(jobs))
     executor.close(now=False)
@@ -61,34 +70,61 @@ def serve(out: str, jobs: str) -> None:
 
 def kills(folder: Path, wanted: int, seed: int = 1) -> int:
     """Kill runner and workers that often, let the batch end, and return how often the runner was killed."""
-    chance = random.Random(seed)
     jobs, out = lines_file(folder, wanted * JOBS_A_KILL), folder / "out"
-    go(folder / "undisturbed", jobs)
-    hits = {"runner": 0, "worker": 0}
-    now = start(out, jobs)
-    while sum(hits.values()) < wanted and now.poll() is None:
-        if chance.random() > EARLY_SHARE:
-            wait_for_jobs(now, folder / LOG)
-        time.sleep(chance.uniform(*BETWEEN_S))
-        if chance.random() < RUNNER_SHARE:
-            now.kill()
-            now.wait()
-            hits["runner"] += 1
-            now = start(out, jobs)
-        else:
-            hits["worker"] += killed_worker(now.pid, chance)
+    (folder / KILLING).touch()
+    began = time.monotonic()
+    now, hits = killed(start(out, jobs), folder, wanted, random.Random(seed))
+    took = time.monotonic() - began
+    (folder / KILLING).unlink()
     if now.wait(END_S):
         raise AssertionError(f"the last runner ended with {now.returncode}")
-    found = told.tally(journal.reading(out), 20)
-    if not found.all_made or found.jobs != wanted * JOBS_A_KILL:
+    go(folder / "undisturbed", jobs)
+    count, found = jobs.read_bytes().count(b"\n"), told.tally(journal.reading(out), 20)
+    if not found.all_made or found.jobs != count:
         raise AssertionError("\n".join(found.lines()))
     if tree(out) != tree(folder / "undisturbed"):
         raise AssertionError("the trees differ")
     if twice := run_again(out):
         raise AssertionError(f"run again though they were published: {twice}")
-    told_so = f"{hits['runner']} runners and {hits['worker']} workers killed over {found.jobs} jobs"
-    print(f"{told_so}: none lost, torn, condemned, or run again once it was published")
+    told_so = f"{hits['runner']} runners and {hits['worker']} workers killed in {took:.0f} s over {found.jobs} jobs"
+    print(f"{told_so}: none lost, torn, condemned, or run again once it was published", flush=True)
     return hits["runner"]
+
+
+def killed(
+    now: "subprocess.Popen[bytes]", folder: Path, wanted: int, chance: random.Random
+) -> "tuple[subprocess.Popen[bytes], Counter[str]]":
+    """Kill a runner, those that follow it, and their workers, that often; return the last runner, and who was killed.
+
+    A runner that comes to its end meanwhile is followed by one that has more to do.
+    """
+    jobs, out, log, hits = folder / "jobs.jsonl", folder / "out", folder / LOG, Counter[str]()
+    while hits.total() < wanted:
+        victim = "runner" if chance.random() < RUNNER_SHARE else "worker"
+        if victim == "worker" or chance.random() > EARLY_SHARE:
+            wait_for_jobs(now, log)
+        time.sleep(chance.uniform(*BETWEEN_S))
+        if victim == "worker" and killed_worker(now, chance):
+            hits["worker"] += 1
+        else:
+            now.kill()
+            if now.wait() not in (0, -signal.SIGKILL):
+                raise AssertionError(f"a runner ended with {now.returncode}")
+            hits["runner"] += now.returncode != 0
+            lengthen(jobs, log)
+            now = start(out, jobs)
+        if hits.total() % TOLD_EVERY == 0:
+            print(f"{hits.total()} killed", flush=True)
+    return now, hits
+
+
+def lengthen(jobs: Path, log: Path) -> None:
+    """Append jobs where so few are left that they may run out before there is another kill."""
+    count = jobs.read_bytes().count(b"\n")
+    begun = log.read_bytes().count(b"\n") if log.exists() else 0
+    if count - begun < MARGIN:
+        with jobs.open("a") as stream:
+            stream.writelines(f'{{"number": {number}}}\n' for number in range(count, begun + 2 * MARGIN))
 
 
 def wait_for_jobs(runner: "subprocess.Popen[bytes]", log: Path) -> None:
@@ -110,16 +146,17 @@ def start(out: Path, jobs: Path) -> "subprocess.Popen[bytes]":
     return subprocess.Popen([sys.executable, "-W", "ignore", "-m", "tests.bench.soak", "serve", str(out), str(jobs)])
 
 
-def killed_worker(runner: int, chance: random.Random) -> bool:
-    """Kill one of the children that run jobs for a runner; return whether there was one."""
-    children = [pid for server in offspring(runner) for pid in offspring(server)]
-    if not children:
-        return False
-    try:
-        os.kill(chance.choice(children), signal.SIGKILL)
-    except ProcessLookupError:
-        return False
-    return True
+def killed_worker(runner: "subprocess.Popen[bytes]", chance: random.Random) -> bool:
+    """Kill one of the children that run jobs for a runner, once it has any; False where it ended before."""
+    while runner.poll() is None:
+        workers = [pid for server in offspring(runner.pid) for pid in offspring(server)]
+        try:
+            os.kill(chance.choice(workers), signal.SIGKILL)
+        except (IndexError, ProcessLookupError):
+            time.sleep(0.01)
+        else:
+            return True
+    return False
 
 
 def offspring(parent: int) -> list[int]:

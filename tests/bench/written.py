@@ -22,7 +22,7 @@ from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.entities.polyline import Polyline
 from shapely import LineString, STRtree, points
 
-from stages.geometry.arrays import Array, Points2
+from stages.geometry.arrays import Array, Points2, Vector2
 from stages.geometry.plane import PlaneCurve
 from stages.model.cutfile import Layer
 from stages.model.pattern import FlatPattern
@@ -111,6 +111,13 @@ def drawn_lines(text: str, layers: Mapping[str, Layer], height: float) -> dict[s
         if meaning is not None:
             lines[meaning] += _line(entity, height)
     return lines
+
+
+def box(text: str, height: float) -> tuple[Vector2, Vector2]:
+    """Return the least and the largest x and y of what is drawn, up to a height of arcs; texts are not looked at."""
+    lines = [line for entity in _entities(ezdxf.read(StringIO(text)).modelspace()) for line in _line(entity, height)]
+    every = np.concatenate(lines)
+    return every.min(axis=0), every.max(axis=0)
 
 
 def _entities(space: Iterable[DXFGraphic]) -> Iterator[DXFGraphic]:

@@ -39,16 +39,21 @@ class Page:
         self.told: list[str] = []
         self.requests: list[str] = []
         self._to, self._from, self._read, self._count, self._session = to_page, from_page, b"", 0, ""
+        self._target: str | None = None
 
-    def open(self, file: Path, width: int = 1000, height: int = 800) -> None:
-        """Open a page and wait until it is loaded."""
-        target = self._ask("Target.createTarget", url="about:blank")["targetId"]
+    def open(self, file: Path, width: int = 1000, height: int = 800, query: str = "") -> None:
+        """Open a page instead of the one that is open, and wait until it is loaded; query: behind its address."""
+        self._session, before = "", self._target
+        target = self._target = self._ask("Target.createTarget", url="about:blank")["targetId"]
+        if before is not None:
+            self._ask("Target.closeTarget", targetId=before)
         self._session = self._ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self.told, self.requests = [], []
         for domain in ("Runtime", "Log", "Network", "Page"):
             self._ask(f"{domain}.enable")
         screen = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         self._ask("Emulation.setDeviceMetricsOverride", **screen)
-        self._address = file.as_uri()
+        self._address = file.as_uri() + query
         self._ask("Page.navigate", url=self._address)
         self.ask("new Promise((done) => document.readyState === 'complete' ? done() : addEventListener('load', done))")
 
@@ -71,7 +76,8 @@ class Page:
             if reply.get("id") == self._count:
                 assert "error" not in reply, reply
                 return reply["result"]
-            self._hear(reply.get("method", ""), reply.get("params", {}))
+            if reply.get("sessionId", "") == self._session:
+                self._hear(reply.get("method", ""), reply.get("params", {}))
 
     def _next(self, end: float) -> dict:
         while b"\0" not in self._read:
@@ -94,8 +100,8 @@ class Page:
 
 
 @contextmanager
-def opened(file: Path, profile: Path, *flags: str) -> Iterator[Page]:
-    """Open a file in a chromium of its own, which ends with the block."""
+def opened(file: Path, profile: Path, *flags: str, query: str = "") -> Iterator[Page]:
+    """Open a file in a chromium of its own, which ends with the block; query: behind its address."""
     assert PROGRAM is not None
     (its_end, to_page), (from_page, its_answers) = os.pipe(), os.pipe()
 
@@ -108,7 +114,7 @@ def opened(file: Path, profile: Path, *flags: str) -> Iterator[Page]:
         os.close(its_answers)
         try:
             page = Page(to_page, from_page)
-            page.open(file)
+            page.open(file, query=query)
             yield page
         finally:
             with suppress(OSError, AssertionError):

@@ -3,6 +3,7 @@
 import base64
 import json
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,8 +21,8 @@ STEP = 1.0
 """Of 255: what colours may differ by from those computed here."""
 U = np.linspace(0.1, 0.9, 5)
 ROWS = np.array([6, 14, 22, 30, 38, 82, 90, 98, 106, 114])
-READY = """new Promise((done) => { const drawn = () => document.querySelector('.solid canvas')?.width > 300;
-  const look = () => current?.solid && drawn() ? setTimeout(done, 80) : setTimeout(look, 20); look(); })"""
+READY = """new Promise((done) => {
+  const look = () => current?.solid?.drawn > 0 ? setTimeout(done, 80) : setTimeout(look, 20); look(); })"""
 MOVE = """(([x, y]) => { const { flat } = current, r = flat.canvas.getBoundingClientRect(), [px, py] = flat.place(x, y);
   const at = { clientX: r.left + px, clientY: r.top + py, bubbles: true };
   flat.canvas.dispatchEvent(new PointerEvent('pointermove', at)); })"""
@@ -29,12 +30,21 @@ NOTE = "document.querySelector('.solid .stage > div').textContent"
 BEYOND = "current.flat.state.field.largest > current.flat.state.field.limit"
 
 
-@pytest.fixture(scope="module", params=[WITH_WEBGL, WITHOUT_WEBGL], ids=["webgl", "canvas"])
+WAYS = {
+    "webgl": (WITH_WEBGL, "?view=webgl", "webgl"),
+    "no card": (WITH_WEBGL, "", "canvas"),
+    "no webgl": (WITHOUT_WEBGL, "?view=webgl", "canvas"),
+}
+"""With which flags the page is opened, what is asked of it, and what it draws with; no card: WebGL by the processor."""
+
+
+@pytest.fixture(scope="module", params=[WAYS["webgl"], WAYS["no webgl"]], ids=["webgl", "canvas"])
 def shown(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, Document]]:
     file, _, view = made(tmp_path_factory.mktemp("page"))
-    with opened(file, tmp_path_factory.mktemp("profile"), *request.param) as page:
+    flags, query, kind = request.param
+    with opened(file, tmp_path_factory.mktemp("profile"), *flags, query=query) as page:
         page.ask(READY)
-        assert page.ask("current.solid.kind") == ("webgl" if request.param is WITH_WEBGL else "canvas")
+        assert page.ask("current.solid.kind") == kind
         yield page, view
 
 
@@ -110,6 +120,40 @@ def test_both_views_take_the_colours_that_are_chosen(shown: tuple[Page, Document
     assert page.ask(formed) == "sides"
     page.ask(choose % "bending")
     assert page.ask("current.flat.state.field.name") == page.ask(formed) == "bending"
+
+
+def test_without_a_graphics_card_a_canvas_is_quicker(tmp_path: Path) -> None:
+    flags, query, kind = WAYS["no card"]
+    with opened(made(tmp_path)[0], tmp_path / "profile", *flags, query=query) as page:
+        page.ask(READY)
+        assert page.ask("current.solid.kind") == kind
+        page.ask("window.painters = [1, 20000].map((triangles) => planishPaint.painter(null, triangles))")
+        assert page.ask("painters.map(({ kind }) => kind)") == ["canvas", "webgl"]
+        page.ask("painters.forEach((one) => one.dispose())")
+        assert page.ask("planishPaint.painter(null, 20000) === painters[1]")
+        assert page.told == []
+
+
+def test_a_part_that_is_opened_next_is_drawn_anew(shown: tuple[Page, Document]) -> None:
+    """With WebGL on the canvas that is there, so that its programs need not be made again."""
+    page, _ = shown
+    page.ask("window.before = document.querySelector('.solid canvas')")
+    page.ask("showPart(0)")
+    assert page.ask("current.solid") is None
+    page.ask(READY)
+    kept = page.ask("current.solid.kind") == "webgl"
+    assert page.ask("document.querySelector('.solid canvas') === window.before") is kept
+    assert page.ask("document.querySelectorAll('.solid canvas').length") == 2
+
+
+def test_numbers_and_flat_view_are_there_before_the_formed_one(shown: tuple[Page, Document]) -> None:
+    page, _ = shown
+    first = (
+        "showPart(0); new Promise((done) => requestAnimationFrame(() => "
+        "done([Boolean(current.flat), Boolean(current.solid), byId('part-title').textContent])))"
+    )
+    assert page.ask(first) == [True, False, "frustum"]
+    page.ask(READY)
 
 
 def test_what_is_proved_is_said_to_be(shown: tuple[Page, Document]) -> None:

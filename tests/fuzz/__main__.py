@@ -1,4 +1,4 @@
-"""Run drawn job files by the thousand: `python -m tests.fuzz --jobs 100000 --seed 1 --finds FOLDER`.
+"""Run drawn job files, no two alike, by the thousand: `python -m tests.fuzz --jobs 100000 --seed 1 --finds FOLDER`.
 
 The finds lie in the folder, three for each place in the program at most, each with what was raised beside it.  They are
 made small by hand and kept in `tests/corpus`.
@@ -9,13 +9,17 @@ import os
 import sys
 import tempfile
 from collections import Counter
+from contextlib import closing
 from hashlib import sha256
+from itertools import islice
 from pathlib import Path
 from time import monotonic
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "MKL_NUM_THREADS")
 KEPT = 3
 TOLD_EVERY = 1000
+IN_MEMORY = Path("/dev/shm")
+"""Where files are written and synced to no disk."""
 
 
 def main() -> int:
@@ -26,7 +30,7 @@ def main() -> int:
     parser.add_argument("--finds", type=Path, default=Path("finds"))
     chosen = parser.parse_args()
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
-    from tests.fuzz.lots import LOT, Find, run_lots
+    from tests.fuzz.lots import Find, run_lots
 
     places: Counter[str] = Counter()
     count, start = 0, monotonic()
@@ -41,9 +45,11 @@ def main() -> int:
             (chosen.finds / name).with_suffix(".txt").write_text(f"{place}\n{find.fault.text}\n", "utf-8", "replace")
             print(f"{count} {place} {name}", flush=True)
 
-    with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
-        lots, size = -(-chosen.jobs // LOT), min(LOT, chosen.jobs)
-        for find in run_lots(chosen.seed * 10**6, lots, Path(folder), size):
+    with (
+        tempfile.TemporaryDirectory(prefix="fuzz-", dir=IN_MEMORY if IN_MEMORY.is_dir() else None) as folder,
+        closing(run_lots(chosen.seed * 10**6, Path(folder))) as finds,
+    ):
+        for find in islice(finds, chosen.jobs):
             count += 1
             if find is not None:
                 keep(find)

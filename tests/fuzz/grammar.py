@@ -54,6 +54,10 @@ def _items(value: object) -> Iterable[tuple[str | int, object]]:
     return enumerate(value) if isinstance(value, list) else ()
 
 
+KNOWN = sorted({str(way[-1]) for table in SEEDS.values() for way in paths(table)})
+"""The names that job files have for things, and some numbers."""
+
+
 def at(value: object, path: Path) -> object:
     """Return what lies there."""
     for step in path:
@@ -88,8 +92,7 @@ def _deleted(_draw: st.DrawFn, table: dict[str, object], path: Path) -> None:
 def _renamed(draw: st.DrawFn, table: dict[str, object], path: Path) -> None:
     owner = at(table, path[:-1])
     if isinstance(owner, dict):
-        known = sorted({str(step) for other in SEEDS.values() for way in paths(other) for step in way[-1:]})
-        owner[draw(st.sampled_from(known) | st.sampled_from(TEXTS))] = owner.pop(path[-1])
+        owner[draw(st.sampled_from(KNOWN) | st.sampled_from(TEXTS))] = owner.pop(path[-1])
 
 
 def _grafted(draw: st.DrawFn, table: dict[str, object], path: Path) -> None:

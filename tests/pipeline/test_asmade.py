@@ -14,9 +14,10 @@ import pytest
 from pipeline.asmade import comparison
 from pipeline.asmade_document import compare_document, compare_lines, compare_schema
 from pipeline.asmade_fits import k_offer, kerf_offer, springback_offer
-from pipeline.asmade_nominal import ISO_2768_ANGLES, ISO_2768_M, Nominal, length_tolerance, nominal_of
+from pipeline.asmade_nominal import Nominal, nominal_of
 from pipeline.asmade_rows import COLUMNS, Measured, Reading, exact
 from pipeline.asmade_sheet import read_sheet, template
+from pipeline.asmade_sizes import ISO_2768_ANGLES, ISO_2768_M, length_tolerance
 from pipeline.cli import main
 from stages.errors import BadInputError
 from stages.model.material import Material

@@ -17,7 +17,7 @@ from pipeline.report.pictures_branched import as_mesh
 from pipeline.run import JobResult, run_job
 from stages.geometry.arrays import norm
 from stages.model.surface import BranchedSurface
-from tests import cad, cadshells
+from tests import cad, cadmeasured, cadshells
 from tests.near import assert_relative
 from tests.pipeline.jobs import write_job
 
@@ -47,7 +47,7 @@ def result() -> tuple[JobResult, dict[str, bytes], float]:
     with TemporaryDirectory() as folder:
         cad.step(Path(folder) / "bend.step", shape)
         made = run_job(job_of(read(write_job(Path(folder), JOB))))
-        return made, outputs(made)[1], cad.area(shape)
+        return made, outputs(made)[1], cadmeasured.area(shape)
 
 
 def test_it_is_cut_as_one_blank_and_its_report_keeps_the_schema() -> None:

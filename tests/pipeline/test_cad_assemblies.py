@@ -13,7 +13,7 @@ from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
 from stages.geometry.arrays import norm
 from stages.model.cadface import CadFace
-from tests import cad
+from tests import cad, cadrhino
 from tests.near import assert_near
 
 ANGLE, SHIFT = 0.7, np.array([300.0, -40.0, 25.0])
@@ -105,7 +105,7 @@ def placed(model: rhino3dm.File3dm, number: str, x: float, scale: float = 1.0) -
 def test_blocks_of_a_3dm_file_lie_where_they_are_inserted(tmp_path: Path) -> None:
     model = rhino3dm.File3dm()
     model.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Centimeters
-    number = block(model, cad.rhino_extrusion([(0, 0, 0), (50, 0, 0)], 30.0), "Wange")
+    number = block(model, cadrhino.rhino_extrusion([(0, 0, 0), (50, 0, 0)], 30.0), "Wange")
     for x, scale in ((0.0, 1.0), (200.0, 1.0), (500.0, 2.0)):
         placed(model, number, x, scale)
     assert model.Write(str(tmp_path / "a.3dm"), 8)

@@ -14,7 +14,7 @@ from pipeline.decode import ResolveError
 from pipeline.reach import Reach
 from stages.model.cadface import CadBody
 from stages.model.faces import FaceFile
-from tests import cad
+from tests import cad, cadrhino
 
 JOB = """\
 schema = 1
@@ -49,7 +49,7 @@ def test_one_face_all_faces_or_the_list_of_them(tmp_path: Path) -> None:
 
 
 def test_faces_of_a_3dm_file_are_listed_by_their_extents(tmp_path: Path) -> None:
-    cad.rhino(tmp_path / "a.3dm", cad.rhino_pipe(20.0, 50.0), unit="Inches", name="Rohr")
+    cadrhino.rhino(tmp_path / "a.3dm", cadrhino.rhino_pipe(20.0, 50.0), unit="Inches", name="Rohr")
     hint = refusal(tmp_path, "a.3dm").hint
     assert '0 "Rohr" cylinder 1016 x 1016 x 1270 mm, 1 "Rohr" plane 1016 x 1016 x 0 mm' in hint
 
@@ -125,7 +125,7 @@ def test_files_damaged_anywhere_are_read_or_refused(tmp_path: Path, sort: str) -
     rng = random.Random(7)
     file = tmp_path / f"a.{sort}"
     if sort == "3dm":
-        cad.rhino(file, cad.rhino_pipe())
+        cadrhino.rhino(file, cadrhino.rhino_pipe())
     else:
         (cad.step if sort == "step" else cad.iges)(file, cad.filleted_box())
     content = bytearray(file.read_bytes())
@@ -153,7 +153,7 @@ def test_the_digest_of_a_job_follows_the_file(tmp_path: Path) -> None:
     job.write_text(f'{JOB}file = "a.3dm"\nindex = 0\n')
     digests = []
     for radius in (20.0, 20.0, 21.0):
-        cad.rhino(tmp_path / "a.3dm", cad.rhino_pipe(radius))
+        cadrhino.rhino(tmp_path / "a.3dm", cadrhino.rhino_pipe(radius))
         digests.append(job_of(read(job)).digest)
     assert digests[2] not in digests[:2]
     digest = cadfiles.cad_source(Reach(tmp_path), FaceFile(file="a.3dm", index=0)).digest

@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.jobfile import read
 from pipeline.jobrules import alike
+from pipeline.layoutfile import SCHEMA, layout_of
 from pipeline.parse import DEEPEST, LARGEST_FILE, MOST_VALUES, parse, refuse_huge
 from pipeline.units import LARGEST, LEAST, MOST_DIGITS, UnreadableError, quantity
 from stages.errors import BadInputError
@@ -132,6 +133,14 @@ def test_a_file_holds_as_many_values_as_it_may_and_no_more() -> None:
     refuse_huge([0] * (MOST_VALUES - 1), FILE)
     with pytest.raises(BadInputError, match=f"more than {MOST_VALUES} values"):
         refuse_huge([0] * MOST_VALUES, FILE)
+
+
+def test_a_layout_of_as_many_copies_as_a_job_may_have_is_read(tmp_path: Path) -> None:
+    row = {"part": "p", "copy": 1, "x": 1.5, "y": -2.25, "angle": 90.0, "mirrored": False}
+    sheet = {"stock": "s", "index": 1, "placements": [row] * caps.MOST_COPIES}
+    layout = layout_of(json.dumps({"schema": SCHEMA, "sheets": [sheet]}).encode(), tmp_path / "layout.json")
+    assert [len(rows.rows) for rows in layout.sheets] == [caps.MOST_COPIES]
+    assert layout.complaints == ()
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ import pytest
 from pipeline import __version__
 from pipeline.cli import main
 from pipeline.kinds import kind_names, template
+from stages.errors import NoSolutionError
 from tests.pipeline.jobs import PLATE, STOCK, TWISTED, write_job
 
 NO_STOCK = ("--set", "stock=[]")
@@ -170,6 +171,18 @@ def test_a_defect_ends_with_4_and_one_line(
     monkeypatch.setenv("PLANISH_TRACEBACK", "1")
     with pytest.raises(ZeroDivisionError):
         main(["run", "job.toml"])
+
+
+def test_a_method_that_falls_short_ends_with_3_and_both_numbers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def short(*_: object) -> None:
+        raise NoSolutionError("fit of K", reached=0.25, wanted=0.125, unit="mm")
+
+    monkeypatch.setattr("pipeline.run.run_job", short)
+    assert planish("run", write_job(tmp_path), "-o", "out") == 3
+    assert capfd.readouterr().err == "fit of K: reached 0.25 mm, wanted 0.125 mm\n"
+    assert not (tmp_path / "out").exists()
 
 
 def test_ctrl_c_ends_with_130_and_leaves_nothing(

@@ -29,7 +29,7 @@ def test_dev_is_short_and_imports_the_standard_library_only() -> None:
     ("words", "module", "rest"),
     [
         (["bench", "nest", "--seconds", "5"], "tests.bench.nest", ["--seconds", "5"]),
-        (["bench", "-k", "nest"], "pytest", ["-k", "nest"]),
+        (["bench", "kernels", "-k", "nest"], "pytest", ["-k", "nest"]),
         (["types"], "mypy", []),
     ],
 )

@@ -143,3 +143,60 @@ def test_a_file_is_replaced_as_a_whole_or_not_at_all(tmp_path: Path) -> None:
         folders.replace(handle, "deep/er/b", b"new")
     assert inside(tmp_path) == ["a", "deep", "deep/er", "deep/er/b"]
     assert (tmp_path / "a").read_bytes() == b"new"
+
+
+def laid_out(root: Path, place: str) -> None:
+    """Make a new folder, and in its place another one, a file, a link, an empty folder, or nothing."""
+    (root / "new").mkdir()
+    (root / "new" / "b").touch()
+    (root / "else").mkdir()
+    (root / "else" / "kept").touch()
+    if place in {"full", "empty"}:
+        (root / "place").mkdir()
+    if place == "full":
+        (root / "place" / "a").touch()
+    if place == "file":
+        (root / "place").touch()
+    if place == "link":
+        (root / "place").symlink_to(root / "else")
+
+
+@pytest.mark.parametrize(("place", "moved"), [("none", 0), ("empty", 0), ("full", 1), ("file", 1), ("link", 1)])
+def test_a_folder_takes_its_place_and_what_lay_there_goes_aside(tmp_path: Path, place: str, moved: int) -> None:
+    laid_out(tmp_path, place)
+    with folders.opened(tmp_path) as handle:
+        assert folders.put("new", handle, "place", handle, "aside") == bool(moved)
+        folders.remove("aside", handle)
+    assert inside(tmp_path) == ["else", "else/kept", "place", "place/b"]
+
+
+@pytest.mark.parametrize("place", ["full", "file", "link"])
+def test_what_lay_there_is_back_where_a_folder_cannot_take_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    laid_out(tmp_path, place)
+    before, rename = inside(tmp_path), os.rename
+
+    def failing(source: str, target: str, **keys: int) -> None:
+        if source == "new" and not os.path.lexists(tmp_path / target):
+            raise PermissionError(13, "no")
+        rename(source, target, **keys)
+
+    monkeypatch.setattr(os, "rename", failing)
+    with folders.opened(tmp_path) as handle, pytest.raises(PermissionError):
+        folders.put("new", handle, "place", handle, "aside")
+    assert inside(tmp_path) == before
+
+
+def test_a_new_folder_is_gone_unless_it_took_a_place(tmp_path: Path) -> None:
+    with folders.opened(tmp_path) as handle:
+        with pytest.raises(OSError, match="name"), folders.grown("part", handle) as part:
+            folders.create(part, "a/b", b"1")
+            folders.create(part, "n" * 300, b"2")
+        assert inside(tmp_path) == []
+        with folders.grown("part", handle) as part:
+            folders.create(part, "a/b", b"1")
+            folders.put("part", handle, "whole", handle, "aside")
+        with pytest.raises(FileExistsError), folders.grown("whole", handle):
+            pass
+    assert (tmp_path / "whole" / "a" / "b").read_bytes() == b"1"

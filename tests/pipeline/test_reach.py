@@ -1,5 +1,6 @@
 """Files that a job names: out of its folder only where that is allowed, and nothing that is no plain file."""
 
+import json
 import os
 import socket
 import threading
@@ -11,7 +12,10 @@ import pytest
 
 from pipeline.cli import main
 from pipeline.decode import ResolveError
+from pipeline.job import job_of
 from pipeline.jobfile import Given, read
+from pipeline.kinds import json_schema
+from pipeline.layoutfile import read_layout
 from pipeline.parse import read_bytes
 from pipeline.reach import Reach, TooLargeError, limited, plain
 from stages.errors import BadInputError
@@ -31,8 +35,9 @@ NORMALS = (
 STOCK = OUTLINE.replace('{{ file = "{file}" }}', "{{ circle = {{ center = [0, 0], radius = 9 }} }}") + (
     '[[stock]]\nid = "s"\nfile = "{file}"\n'
 )
+LAYOUT = STOCK.replace('[[stock]]\nid = "s"\nfile = ', "[nest]\nlayout = ")
 JOBS = {"mesh": (MESH, "a.stl"), "face": (FACE, "a.step"), "outline": (OUTLINE, "a.dxf"), "normals": (NORMALS, "a.stl")}
-JOBS |= {"stock": (STOCK, "a.dxf"), "pieces": (STOCK, "a.json")}
+JOBS |= {"stock": (STOCK, "a.dxf"), "pieces": (STOCK, "a.json"), "layout": (LAYOUT, "a.json")}
 
 
 @pytest.fixture
@@ -154,8 +159,25 @@ def test_every_way_to_name_a_file_is_held_to_that(home: Path, kind: str) -> None
     with pytest.raises(BadInputError, match="lies outside of the folder of the job file"):
         read(job)
     with pytest.raises(BadInputError) as caught:
-        read(job, given=Given(allow=(home.parent / "secret",)))
+        job_of(read(job, given=Given(allow=(home.parent / "secret",))))
     assert "lies outside" not in str(caught.value), "it is no file of that format, but it may be read"
+
+
+def test_there_is_no_other_way_to_name_a_file() -> None:
+    tables = json.loads(json_schema())["$defs"]
+    keys = {(table, key) for table, rows in tables.items() for key in rows.get("properties", ())}
+    names = {(table, key) for table, key in keys if set(key.split("_")) & {"file", "path", "folder", "layout", "url"}}
+    named = {(table, "file") for table in ("CurveSpec", "MeshFile", "MeshNormals", "FaceFile", "StockTable")}
+    assert names - {("DxfTable", "one_file_per")} == named | {("NestTable", "layout")}
+
+
+@pytest.mark.parametrize("name", ["/dev/zero", "pipe"])
+def test_a_layout_that_is_no_plain_file_is_refused_and_not_waited_for(home: Path, name: str) -> None:
+    os.mkfifo(home / "pipe")
+    start = monotonic()
+    with pytest.raises(BadInputError, match="cannot be read: it is a"):
+        read_layout(home / name)
+    assert monotonic() - start < 1.0
 
 
 @pytest.mark.parametrize("kind", ["mesh", "face"])

@@ -22,12 +22,12 @@ def available() -> bool:
 
 
 def read(paths: Sequence[Path]) -> dict[str, Reading]:
-    return {path.stem: _read(path) for path in paths}
+    return {path.stem: stated(path) for path in paths}
 
 
-def _read(path: Path) -> Reading:
+def stated(path: Path, step_deg: float = STEP_DEG) -> Reading:
     """Return what `ogr2ogr` says in well-known text, a line for each entity."""
-    options = ["--config", "OGR_ARC_STEPSIZE", str(STEP_DEG), "-lco", "GEOMETRY=AS_WKT", *BLOCKS]
+    options = ["--config", "OGR_ARC_STEPSIZE", str(step_deg), "-lco", "GEOMETRY=AS_WKT", *BLOCKS]
     command = ["ogr2ogr", *options, "-f", "CSV", "/vsistdout/", str(path)]
     answer = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
     csv.field_size_limit(10**8)

@@ -1,4 +1,4 @@
-/* The page: verdict, theme, links within it. */
+/* The page: verdict, theme, paper, links within it. */
 
 const plans = new Set();
 
@@ -33,9 +33,26 @@ function startTheme() {
   setTheme(dark.matches ? "dark" : "light");
   dark.addEventListener("change", () => setTheme(dark.matches ? "dark" : "light"));
   byId("theme").addEventListener("click", () => setTheme(isDark() ? "light" : "dark"));
-  let before = "light";
-  window.addEventListener("beforeprint", () => { before = document.documentElement.dataset.theme; setTheme("light"); for (const plan of plans) plan.paint(); });
-  window.addEventListener("afterprint", () => setTheme(before));
+}
+
+const PAPER_SHARPNESS = 3; // dots to a px of the page: some 290 to an inch
+
+/* On paper all is light, drawn sharper, and the formed part is there, too, as it stands. */
+function startPaper() {
+  let before = null;
+  window.addEventListener("beforeprint", () => {
+    before ??= document.documentElement.dataset.theme;
+    current?.form?.();
+    setTheme("light");
+    for (const plan of plans) plan.sharpen(PAPER_SHARPNESS);
+    current?.solid?.toPaper(PAPER_SHARPNESS);
+  });
+  window.addEventListener("afterprint", () => {
+    current?.solid?.fromPaper();
+    for (const plan of plans) plan.sharpen(null);
+    setTheme(before ?? "light");
+    before = null;
+  });
 }
 
 function goTo(index) {
@@ -68,6 +85,7 @@ function startPage() {
   showVerdict();
   startTable();
   startSheets();
+  startPaper(); // behind the sheets, which open all that are to be printed
   for (const name of ["nest", "write"]) {
     const stage = name === "nest" ? report.nest : report.job.write;
     if (stage?.status) byId("job-stages").append(stageBox(name, stage));

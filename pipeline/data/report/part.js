@@ -1,6 +1,6 @@
 /* One part: its stages with every metric, and its views. */
 
-let current = null; // what is open: { index, flat, solid }
+let current = null; // what is open: { index, flat, solid, form }; form: builds the formed view, if it is not there yet
 
 function metricRows(stage) {
   const failing = [...stage.metrics].sort((a, b) => Number(a.pass) - Number(b.pass));
@@ -94,14 +94,24 @@ function colourChoice(fields) {
   return make("select", { "aria-label": "Colours of the pattern", on: { change: choose } }, option(null), ...fields.map(option));
 }
 
+const PAINTER = new URLSearchParams(location.search).get("view"); // report.html?view=webgl or canvas; else what is quicker
+
 function solidPanel(part) {
   const host = make("div", { class: "stage" });
   const here = current;
-  const start = () => {
-    if (current !== here) return;
+  here.form = () => {
+    if (current !== here || here.solid) return;
     const onCursor = (place) => current.flat?.setCursor(place);
-    here.solid = window.planishView3d.mount(host, part.view.formed, { onCursor, field: here.flat?.state.field?.name, theme: isDark() ? "dark" : "light" });
+    here.solid = window.planishView3d.mount(host, part.view.formed, { onCursor, by: PAINTER, field: here.flat?.state.field?.name, theme: isDark() ? "dark" : "light" });
   };
-  requestAnimationFrame(() => setTimeout(start)); // the numbers and the flat view are there first
+  afterPaint(here.form);
   return make("div", { class: "view solid" }, host);
+}
+
+const PATIENCE_MS = 300; // for a moment when nothing else is to be done
+
+/* Do something when what is there now has been painted: numbers and flat view are not kept waiting by it. */
+function afterPaint(then) {
+  const idle = window.requestIdleCallback ?? ((call) => setTimeout(call));
+  requestAnimationFrame(() => setTimeout(() => idle(then, { timeout: PATIENCE_MS })));
 }

@@ -5,7 +5,7 @@ const themeColour = (name) => getComputedStyle(document.documentElement).getProp
 /* headroom: px above the drawing that are to stay free, at a time. */
 function openPlan(canvas, box, draw, hover, headroom = () => 0) {
   const context = canvas.getContext("2d");
-  const plan = { canvas, context, k: 1, ox: 0, oy: 0, width: 0, height: 0, fitted: 1 };
+  const plan = { canvas, context, k: 1, ox: 0, oy: 0, width: 0, height: 0, fitted: 1, sharpness: null };
   plan.place = (x, y) => [plan.ox + plan.k * x, plan.oy - plan.k * y];
   plan.unplace = (px, py) => [(px - plan.ox) / plan.k, (plan.oy - py) / plan.k];
   let asked = 0;
@@ -18,11 +18,12 @@ function openPlan(canvas, box, draw, hover, headroom = () => 0) {
   const sized = () => {
     const whole = plan.width === 0 || Math.abs(plan.k - plan.fitted) < 1e-9 * plan.fitted;
     plan.width = canvas.clientWidth; plan.height = canvas.clientHeight;
-    const dpr = window.devicePixelRatio || 1;
-    canvas.width = Math.round(plan.width * dpr); canvas.height = Math.round(plan.height * dpr);
+    raster(plan);
     if (whole) fitPlan(plan, box, headroom());
     plan.paint();
   };
+  /* sharpness: dots of the canvas to a px of the page; null: as the screen has them. */
+  plan.sharpen = (sharpness) => { plan.sharpness = sharpness; raster(plan); plan.paint(); };
   const watch = new ResizeObserver(sized);
   watch.observe(canvas);
   sized();
@@ -48,13 +49,21 @@ function zoomPlan(plan, factor, px, py) {
   plan.k = k; plan.ox = px - k * x; plan.oy = py + k * y;
 }
 
+const dotsPerPx = (plan) => plan.sharpness ?? (window.devicePixelRatio || 1);
+
+function raster(plan) {
+  const dots = dotsPerPx(plan);
+  plan.canvas.width = Math.round(plan.width * dots);
+  plan.canvas.height = Math.round(plan.height * dots);
+}
+
 function paint(plan, draw) {
   const { context, canvas } = plan;
-  const dpr = window.devicePixelRatio || 1;
+  const dots = dotsPerPx(plan);
   context.setTransform(1, 0, 0, 1, 0, 0);
   context.fillStyle = themeColour("--bg");
   context.fillRect(0, 0, canvas.width, canvas.height);
-  context.setTransform(dpr, 0, 0, dpr, 0, 0);
+  context.setTransform(dots, 0, 0, dots, 0, 0);
   draw(plan);
   scaleBar(plan);
 }

@@ -7,7 +7,8 @@ function tapeBox({ tape }) {
     cell("along", span.along_mm), cell("straight", span.straight_mm), make("td", { text: span.evidence })));
   const heads = ["From \u2013 to", "What", "Along the edge, mm", "Straight, mm", "Evidence"];
   const head = make("thead", {}, make("tr", {}, ...heads.map((text, i) => make("th", { scope: "col", class: i === 2 || i === 3 ? "n" : "", text }))));
-  const spots = tape.spots.map(({ letters, x, y }) => `${[...letters].join(" = ")} at x ${shown(x)}, y ${shown(y)} mm`).join("; ");
+  const hundredths = (mm) => (Math.abs(mm) < 0.005 ? 0 : mm).toFixed(2).replace("-", "\u2212"); // what a tape tells, and no -0
+  const spots = tape.spots.map(({ letters, x, y }) => `${[...letters].join(" = ")} at x ${hundredths(x)}, y ${hundredths(y)} mm`).join("; ");
   return make("section", { "aria-label": "tape" }, make("h3", { text: "Measure on the blank" }), make("div", { class: "means", text: spots }),
     make("div", { class: "scroll" }, make("table", {}, make("caption", { class: "unseen", text: "Distances between the corners of the blank" }), head, make("tbody", {}, ...rows))));
 }

@@ -6,7 +6,7 @@
   const { sharesOf, cross } = window.planishPlaces, { painter, seen, placed } = window.planishPaint, { INK, colour } = window.planishOver;
   const MARGIN = 42, BELOW = 40, LEAST_ZOOM = 0.3, MOST_ZOOM = 60;
   const WIDTH = { ruling: 0.8, mark: 1.2, bend: 1.4, hole: 1.4, worst: 3, c0: 2.6, c1: 2.6, start: 2.6, end: 2.6 };
-  const GHOSTS = ["c0", "c1", "start", "end"];
+  const GHOSTS = ["c0", "c1", "start", "end"], FILL = "position:absolute;inset:0;width:100%;height:100%;";
 
   function element(host, tag, style, text) {
     const made = document.createElement(tag);
@@ -26,6 +26,7 @@
       this.fields = this.model.fields;
       this.canForm = this.model.canForm;
       this.share = 1;
+      this.drawn = 0;
       this.gone = new AbortController();
       this.build();
       this.field = this.fields.find((one) => one.name === options.field) ?? null;
@@ -39,18 +40,21 @@
     build() {
       this.host.style.position = "relative";
       this.host.replaceChildren();
-      const fill = "position:absolute;inset:0;width:100%;height:100%;";
-      this.canvas = element(this.host, "canvas", fill);
-      this.over = element(this.host, "canvas", fill + "touch-action:none;cursor:grab;");
+      this.over = element(this.host, "canvas", FILL + "touch-action:none;cursor:grab;");
       this.over.tabIndex = 0;
       this.over.setAttribute("role", "img");
       this.over.setAttribute("aria-label", "Formed part. Arrow keys turn it, with shift move it, plus and minus zoom, Home resets.");
       this.note = element(this.host, "div", "position:absolute;left:8px;top:32px;font:12px system-ui,sans-serif;pointer-events:none;white-space:pre;");
       this.controls();
-      this.painter = painter(this.canvas, this.options.three !== false);
-      this.canvas.addEventListener("webglcontextlost", (event) => this.fallBack(event), { signal: this.gone.signal });
+      this.take(painter(this.options.by, this.model.triangles.length / 3));
+      this.painter.canvas.addEventListener("webglcontextlost", (event) => this.fallBack(event), { signal: this.gone.signal });
       window.planishHands.listen(this.over, this, this.gone.signal);
-      window.addEventListener("beforeprint", () => this.draw(), { signal: this.gone.signal });
+    }
+
+    take(painter_) {
+      this.painter = painter_;
+      this.painter.canvas.style.cssText = FILL;
+      this.host.prepend(this.painter.canvas);
     }
 
     controls() {
@@ -80,12 +84,28 @@
     fallBack(event) {
       event.preventDefault();
       if (this.gone.signal.aborted) return;
-      const fresh = this.canvas.cloneNode();
-      this.canvas.replaceWith(fresh);
-      this.canvas = fresh;
       this.painter.dispose();
-      this.painter = painter(fresh, false);
+      this.take(painter("canvas"));
       this.load();
+    }
+
+    // A canvas of WebGL is blank on paper: there the part is painted as it stands on one of two dimensions.
+    toPaper(ratio) {
+      if (this.paper) return;
+      this.paper = painter("canvas");
+      this.paper.canvas.style.cssText = FILL;
+      this.painter.canvas.replaceWith(this.paper.canvas);
+      this.paper.load(this.scene);
+      const sight = { ...this.sight(), ratio };
+      this.paper.draw(sight);
+      this.drawOver(sight);
+    }
+
+    fromPaper() {
+      this.paper?.canvas.replaceWith(this.painter.canvas);
+      this.paper?.dispose();
+      this.paper = null;
+      this.ask();
     }
 
     orbit(around, over) {
@@ -191,9 +211,11 @@
     }
 
     draw() {
+      if (this.paper) return;
       const sight = this.now = this.sight();
       this.painter.draw(sight);
       this.drawOver(sight);
+      this.drawn += 1;
     }
 
     // What is under a point of the screen, nearest to the viewer.
@@ -246,6 +268,7 @@
       this.gone.abort();
       this.watcher.disconnect();
       cancelAnimationFrame(this.waiting);
+      this.paper?.dispose();
       this.painter.dispose();
       this.host.replaceChildren();
       this.model = this.scene = this.spot = null;
@@ -257,6 +280,7 @@
     return {
       get kind() { return view.painter.kind; },
       get canForm() { return view.canForm; },
+      get drawn() { return view.drawn; },
       fields: view.fields.map(({ name, title, unit, limit }) => ({ name, title, unit, limit })),
       setCursor: (place) => view.setCursor(place),
       setField: (name) => view.setField(name),
@@ -265,6 +289,8 @@
       resize: () => view.resize(),
       reset: () => view.reset(),
       project: (point) => view.project(point),
+      toPaper: (ratio) => view.toPaper(ratio),
+      fromPaper: () => view.fromPaper(),
       dispose: () => view.dispose(),
     };
   }

@@ -1,13 +1,17 @@
 // Two painters of the same scene: three.js on WebGL, and a canvas of two dimensions that paints from back to front.
 //
 // A scene is {model, faces: null | Float32Array of colours a vertex, lines: [{points, colour, width, ghost}], theme};
-// a sight is {frame: [right, up, towards], centre, scale: px per mm, shift: [x, y] px, width, height, radius: mm}.
+// a sight is {frame: [right, up, towards], centre, scale: px per mm, shift: [x, y] px, width, height, radius: mm, ratio}.
+//
+// Each has its canvas.  That of WebGL, and the programs of its graphics, serve one part after the other: to begin with
+// them takes longer than a part does, on a machine without a graphics card by far.
 "use strict";
 (function () {
   const { unit, dot } = window.planishPlaces;
   const LIGHT = unit([-0.45, 0.55, 0.7]);
   const FRONT = [0.78, 0.88, 0.96], BACK = [0.93, 0.87, 0.74], SHADE = 0.38, FIELD_SHADE = 0.22, DARK = 0.86;
   const SEAM = 1.1;   // px by which triangles overlap: else the ground shines through between them
+  const MANY = 10000;   // triangles: with fewer a canvas is quicker than WebGL by the processor, with 1440 three times
   const LIFT = 0.05;   // how far lines are brought forward, as a share of the radius: half of a cell lies before its own far edge
 
   const dim = (colour, theme) => theme === "dark" ? colour.map((one) => one * DARK) : colour;
@@ -29,7 +33,7 @@
   }
 
   class Flat {
-    constructor(canvas) { this.canvas = canvas; this.kind = "canvas"; this.pen = canvas.getContext("2d"); }
+    constructor() { this.canvas = document.createElement("canvas"); this.kind = "canvas"; this.pen = this.canvas.getContext("2d"); }
     load(scene) { this.scene = scene; }
     moved() {}
     recoloured() {}
@@ -83,7 +87,7 @@
       pen.stroke();
     }
 
-    dispose() { this.canvas.width = this.canvas.height = 0; this.scene = null; }
+    dispose() { this.canvas.remove(); this.canvas.width = this.canvas.height = 0; this.scene = null; }
   }
 
   const VERTEX = `attribute vec3 colour; varying vec3 vColour; varying vec3 vNormal;
@@ -95,16 +99,27 @@
     }`;
 
   class Solid {
-    constructor(canvas, three) {
-      this.canvas = canvas;
+    constructor(three, context, slow) {
+      this.slow = slow;   // by the processor
+      this.canvas = context.canvas;
       this.kind = "webgl";
       this.three = three;
-      this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: true });
+      this.renderer = new three.WebGLRenderer({ canvas: this.canvas, context });
+      this.renderer.debug.checkShaderErrors = false;   // to ask for them is to wait until all programs are made
       this.renderer.setClearColor(0, 0);
       this.camera = new three.OrthographicCamera();
       this.camera.matrixAutoUpdate = false;
+      const uniform = (value) => ({ value });
+      this.paint = new three.ShaderMaterial({
+        vertexShader: VERTEX, fragmentShader: FRAGMENT, side: three.DoubleSide,
+        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4,
+        uniforms: { light: uniform(LIGHT), front: uniform(FRONT), back: uniform(BACK), shade: uniform(SHADE), field: uniform(0) },
+      });
+      this.inks = new Map();   // kept as the paint is: with the last material of its kind a program goes
       this.owned = [];
     }
+
+    get lost() { return this.renderer.getContext().isContextLost(); }
 
     own(thing) { this.owned.push(thing); return thing; }
 
@@ -118,14 +133,7 @@
       grid.setAttribute("normal", new three.BufferAttribute(Float32Array.from(model.normal), 3));
       grid.setAttribute("colour", new three.BufferAttribute(new Float32Array(n), 3));
       grid.setIndex(new three.BufferAttribute(model.triangles, 1));
-      const uniform = (value) => ({ value });
-      this.paint = this.own(new three.ShaderMaterial({
-        vertexShader: VERTEX, fragmentShader: FRAGMENT, side: three.DoubleSide,
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4,
-        uniforms: { light: uniform(LIGHT), front: uniform(FRONT), back: uniform(BACK), shade: uniform(SHADE), field: uniform(0) },
-      }));
       this.add(new three.Mesh(grid, this.paint));
-      this.inks = [];
       for (const line of scene.lines) this.line(line);
       this.recoloured();
     }
@@ -136,13 +144,14 @@
       const three = this.three, geometry = this.own(new three.LineSegmentsGeometry());
       geometry.setPositions(Float32Array.from(line.points));
       line.geometry = geometry;
-      const ink = (options) => {
-        const material = this.own(new three.LineMaterial({ color: line.colour, linewidth: line.width, ...options }));
-        this.inks.push(material);
-        this.add(new three.LineSegments2(geometry, material));
-      };
-      ink({});
-      if (line.ghost) ink({ linewidth: 0.8, transparent: true, opacity: 0.3, depthFunc: three.GreaterDepth, depthWrite: false });
+      this.add(new three.LineSegments2(geometry, this.ink(line.colour, line.width, {})));
+      if (line.ghost) this.add(new three.LineSegments2(geometry, this.ink(line.colour, 0.8, { transparent: true, opacity: 0.3, depthFunc: three.GreaterDepth, depthWrite: false })));
+    }
+
+    ink(color, linewidth, options) {
+      const key = [color, linewidth, options.opacity].join();
+      if (!this.inks.has(key)) this.inks.set(key, new this.three.LineMaterial({ color, linewidth, ...options }));
+      return this.inks.get(key);
     }
 
     // The model has been formed anew: same places, other positions.
@@ -172,8 +181,9 @@
 
     draw(sight) {
       const { camera, renderer } = this, { scale, width, height, shift, centre } = sight, [r, u, t] = sight.frame;
-      renderer.setPixelRatio(sight.ratio);
-      renderer.setSize(width, height, false);
+      const size = [width, height, sight.ratio];
+      if (size.join() !== this.size) renderer.setDrawingBufferSize(...size);   // made anew whenever it is set
+      this.size = size.join();
       const far = 4 * sight.radius, eye = (k) => centre[k] + 2 * sight.radius * t[k];
       camera.left = (-width / 2 - shift[0]) / scale;
       camera.right = (width / 2 - shift[0]) / scale;
@@ -183,7 +193,7 @@
       camera.updateProjectionMatrix();
       camera.matrix.set(r[0], u[0], t[0], eye(0), r[1], u[1], t[1], eye(1), r[2], u[2], t[2], eye(2), 0, 0, 0, 1);
       camera.matrixWorldNeedsUpdate = true;
-      for (const ink of this.inks) ink.resolution.set(width, height);
+      for (const ink of this.inks.values()) ink.resolution.set(width, height);
       renderer.render(this.space, camera);
     }
 
@@ -192,20 +202,46 @@
     dispose() {
       this.free();
       this.scene = this.space = null;
+      this.canvas.remove();
+      if (!kept && !this.lost) kept = this;
+      else this.end();
+    }
+
+    end() {
+      for (const material of [this.paint, ...this.inks.values()]) material.dispose();
       this.renderer.dispose();
-      this.renderer.forceContextLoss();
+      if (!this.lost) this.renderer.forceContextLoss();
     }
   }
 
-  // Asked on a canvas of its own: a failed attempt on the real one would leave a message and no canvas.
-  function hasWebGL() {
-    const context = document.createElement("canvas").getContext("webgl2");
-    context?.getExtension("WEBGL_lose_context")?.loseContext();
-    return Boolean(context);
+  let kept = null, card = null;   // the painter on WebGL that no part has now; whether there is a graphics card, if tried
+
+  // wish: "webgl", "canvas", or what is quicker here: without a graphics card a canvas, unless there are many triangles.
+  function painter(wish, triangles = 0) {
+    if (wish === "canvas" || !window.planishThree) return new Flat();
+    const known = kept, strict = wish !== "webgl" && triangles < MANY;
+    if (known && strict && known.slow) return new Flat();
+    kept = null;
+    if (known && !known.lost) return known;
+    known?.end();
+    return solid(strict) ?? new Flat();
   }
 
-  function painter(canvas, wished) {
-    return wished && window.planishThree && hasWebGL() ? new Solid(canvas, window.planishThree) : new Flat(canvas);
+  function solid(strict) {
+    if (strict && card === false) return null;
+    const canvas = document.createElement("canvas");
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: true, failIfMajorPerformanceCaveat: strict });
+    card = context !== null && !byProcessor(context);
+    if (context && (card || !strict)) return new Solid(window.planishThree, context, !card);
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+    return null;
+  }
+
+  // Whether a processor does the work of a graphics card, by the name of who draws; not all browsers say it at once.
+  function byProcessor(context) {
+    const told = context.getParameter(context.RENDERER), more = told.startsWith("WebKit") && context.getExtension("WEBGL_debug_renderer_info");
+    const name = more ? context.getParameter(more.UNMASKED_RENDERER_WEBGL) : told;
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
   }
 
   window.planishPaint = { painter, seen, placed };

@@ -10,14 +10,16 @@ from typing import NoReturn
 from unittest.mock import patch
 
 from pipeline.batch import guard
-from pipeline.batch.guard import Files, Named
-from pipeline.batch.work import Limits, Record, Work
+from pipeline.batch.guard import Files
+from pipeline.batch.named import Named
+from pipeline.batch.work import Limits, Record, Status, Work
 from pipeline.jobfile import ReadJob
 
 WALL_S = 0.6
 MEMORY = 400 << 20
 GOOD = "good"
 ONCE = "waits the first time that it is run"
+KILLED_ONCE = "is killed from outside the first time that it is run"
 
 
 def segfault() -> None:
@@ -107,6 +109,28 @@ ACTS = {
 """What a job does, by name."""
 
 
+ENDS: dict[str, tuple[Status, str, bool]] = {
+    "segfault": ("crashed", "SIGSEGV", True),
+    "abort": ("crashed", "SIGABRT", True),
+    "freed twice": ("crashed", "SIGABRT", True),
+    "exit 0": ("crashed", "the process ended by itself, exit code 0", True),
+    "exit 3": ("crashed", "the process ended by itself, exit code 3", True),
+    "exit 255": ("crashed", "the process ended by itself, exit code 255", True),
+    "exit from a thread": ("crashed", "the process ended by itself, exit code 7", True),
+    "loop": ("timed-out", f"more than {WALL_S} s", True),
+    "sleep": ("timed-out", f"more than {WALL_S} s", True),
+    "stopped": ("timed-out", f"more than {WALL_S} s", True),
+    "hog": ("out-of-memory", "needs more than 400 MB of memory", True),
+    "recursion": ("internal", "RecursionError: maximum recursion depth exceeded", True),
+    "stack": ("crashed", "SIGSEGV", True),
+    "SystemExit": ("internal", "SystemExit: 0", True),
+    "KeyboardInterrupt": ("internal", "KeyboardInterrupt: ", True),
+    "closed pipes": ("crashed", "the process ended by itself, exit code 9", True),
+    "killed": ("crashed", "killed from outside (SIGKILL)", False),
+}
+"""What becomes of each: status, how the cause begins, whether it is the job's own failure."""
+
+
 def wait_once(begun: Path) -> None:
     """Wait for ever, unless it has been begun before."""
     if not begun.exists():
@@ -114,12 +138,21 @@ def wait_once(begun: Path) -> None:
         time.sleep(3600)
 
 
+def killed_once(begun: Path) -> None:
+    """Be killed as by a system that runs out of memory, unless it has been begun before."""
+    if not begun.exists():
+        begun.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
 def poisoned(work: Work) -> Record:
     """Run a job in a child, doing what its first setting says."""
     kind = work.settings[0]
     if kind == ONCE:
         wait_once(Path(f"{work.draft}.begun"))
-    if kind in {GOOD, ONCE}:
+    if kind == KILLED_ONCE:
+        killed_once(Path(work.file).with_name(f"{work.job}.begun"))
+    if kind in {GOOD, ONCE, KILLED_ONCE}:
         with patch.object(guard, "_ended", _made):
             return guard.run(work)
 

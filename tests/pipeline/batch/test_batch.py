@@ -1,6 +1,7 @@
 """Batches run again: what stands is not run, what does not is, and the journal knows why."""
 
 import json
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from pipeline.batch.entries import entries
 from pipeline.batch.identity import Program
 from pipeline.batch.stopped import StoppedError
 from pipeline.batch.work import Limits, Record, Status, Work
+from pipeline.parse import LARGEST_FILE
 from stages.errors import BadInputError
 from tests.pipeline.batch.inprocess import InProcess, made, made_as, tree
 from tests.pipeline.batch.runs import PROGRAM, go, lines_file
@@ -199,7 +201,7 @@ def test_a_file_of_many_jobs_that_changes_while_it_runs_stops_the_batch_and_lose
     assert len(tree(out)) == 1400
 
 
-def test_a_job_file_that_changes_before_it_is_run_is_run_as_it_is_then_and_once_more(tmp_path: Path) -> None:
+def test_a_job_file_that_changes_before_it_is_run_is_run_and_recorded_as_it_is_then(tmp_path: Path) -> None:
     for name in ("a.toml", "b.toml"):
         (tmp_path / "in").mkdir(exist_ok=True)
         (tmp_path / "in" / name).write_text("# old")
@@ -211,8 +213,30 @@ def test_a_job_file_that_changes_before_it_is_run_is_run_as_it_is_then_and_once_
     out = tmp_path / "out"
     assert go(out, tmp_path / "in", InProcess(job=job, slots=1)) == ["a", "b"]
     assert b"# new" in tree(out)["b/report.json"]
-    assert go(out, tmp_path / "in") == ["b"]
     assert go(out, tmp_path / "in") == []
+    (tmp_path / "in" / "b.toml").write_text("# old")
+    assert go(out, tmp_path / "in") == ["b"], "what was taken in at first was never run"
+
+
+@pytest.mark.parametrize(
+    ("spoil", "cause"),
+    [
+        (lambda file: file.unlink(), "cannot be read: there is no plain file"),
+        (lambda file: file.write_bytes(b"#" * (LARGEST_FILE + 1)), "larger than 20 MB"),
+    ],
+)
+def test_a_job_file_that_cannot_be_read_when_its_turn_comes_is_a_bad_job(
+    tmp_path: Path, spoil: Callable[[Path], object], cause: str
+) -> None:
+    file = tmp_path / "job.toml"
+    file.write_text("# good")
+    taken = list(entries([file]))
+    spoil(file)
+    assert go(tmp_path / "out", iter(taken)) == [], "no child is asked"
+    found = json.loads(tree(tmp_path / "out")["job/failure.json"])
+    assert (found["status"], found["cause"]) == ("bad-input", f"{file}: {cause}")
+    file.write_text("# good")
+    assert go(tmp_path / "out", entries([file])) == ["job"]
 
 
 def test_ids_that_are_asked_for_twice_are_told_apart_and_stay_so(tmp_path: Path) -> None:

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.batch import cluster, digest
+from pipeline.batch import cluster, commands, digest
 from pipeline.batch.cluster import Cluster, troubles
 from pipeline.batch.identity import program
 from pipeline.batch.remote import Host
+from pipeline.cli import main
 from stages.errors import BadInputError
 from tests.pipeline.batch.daskprocesses import Dask, dask
 from tests.pipeline.batch.poison import GOOD, ONCE, poisoned, work
+from tests.pipeline.batch.poisonedbatch import Hurried, by_text, check, jobs_file
 from tests.pipeline.batch.processes import alive_after, below
 
 pytest.importorskip("distributed")
@@ -51,6 +53,15 @@ def test_good_jobs_among_poisonous_ones_are_all_made_on_a_cluster(tmp_path: Path
     made = [number for number, kind in enumerate(kinds) if kind == GOOD]
     assert all(records[number].digest == digest.folder(tmp_path / str(number)) for number in made)
     assert not list(tmp_path.glob(f"{cluster.PROBE}*"))
+
+
+def test_a_whole_batch_with_poison_on_a_cluster(tmp_path: Path, running: Dask, monkeypatch: pytest.MonkeyPatch) -> None:
+    jobs, out = jobs_file(tmp_path / "in"), tmp_path / "out"
+    monkeypatch.setattr(commands, "executor_of", lambda _means, at: Hurried(Cluster(running.address, at, by_text)))
+    with pytest.raises(SystemExit) as ended:
+        main(["batch", str(jobs), "-o", str(out), "--memory", "400"])
+    assert ended.value.code == commands.EXIT_SOME_FAILED
+    check(jobs, out)
 
 
 def test_slots_follow_the_threads(workers: Cluster) -> None:

@@ -13,32 +13,11 @@ import pytest
 
 from pipeline.batch import digest
 from pipeline.batch.executor import MOST, Local, most
-from pipeline.batch.work import Status
-from tests.pipeline.batch.poison import ACTS, GOOD, WALL_S, poisoned, work
+from tests.pipeline.batch.poison import ACTS, ENDS, GOOD, poisoned, work
 from tests.pipeline.batch.processes import alive_after, below
 
 WAIT_S = 300.0
 """A machine that does much else is no failure."""
-
-ENDS: dict[str, tuple[Status, str, bool]] = {
-    "segfault": ("crashed", "SIGSEGV", True),
-    "abort": ("crashed", "SIGABRT", True),
-    "freed twice": ("crashed", "SIGABRT", True),
-    "exit 0": ("crashed", "the process ended by itself, exit code 0", True),
-    "exit 3": ("crashed", "the process ended by itself, exit code 3", True),
-    "exit 255": ("crashed", "the process ended by itself, exit code 255", True),
-    "exit from a thread": ("crashed", "the process ended by itself, exit code 7", True),
-    "loop": ("timed-out", f"more than {WALL_S} s", True),
-    "sleep": ("timed-out", f"more than {WALL_S} s", True),
-    "stopped": ("timed-out", f"more than {WALL_S} s", True),
-    "hog": ("out-of-memory", "needs more than 400 MB of memory", True),
-    "recursion": ("internal", "RecursionError: maximum recursion depth exceeded", True),
-    "stack": ("crashed", "SIGSEGV", True),
-    "SystemExit": ("internal", "SystemExit: 0", True),
-    "KeyboardInterrupt": ("internal", "KeyboardInterrupt: ", True),
-    "closed pipes": ("crashed", "the process ended by itself, exit code 9", True),
-    "killed": ("crashed", "killed from outside (SIGKILL)", False),
-}
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.batch import batch, publish
+from pipeline.batch import batch, draft, publish
 from pipeline.batch.entries import entries
 from pipeline.batch.journal import Journal
 from pipeline.batch.runner import Stop
+from pipeline.batch.stopped import StoppedError
 from pipeline.batch.work import Record, Work
 from stages.errors import BadInputError
 from tests.pipeline.batch.inprocess import InProcess, made, tree
@@ -91,12 +92,14 @@ def test_a_folder_of_drafts_that_is_swapped_for_a_link_while_it_runs_leads_nowhe
             (out / ".drafts").rename(tmp_path / "moved")
             (out / ".drafts").symlink_to(victim)
             return Record("rejected", "", 0.0, (), "", own=True)
-        return made(work)
+        try:
+            return Record("made", "", 0.0, (), draft.write(Path(work.draft), {"report.json": b"{}"}), own=True)
+        except OSError as error:
+            return Record("crashed", str(error), 0.0, (), "", own=False)
 
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(StoppedError, match=r"Not a directory.*\.drafts"):
         go(out, jobs, InProcess(job=job, slots=1))
-    assert {path.name for path in victim.iterdir()} <= {"1-1", "1-3"}
-    assert (victim / "1-1").read_text() == "keep"
+    assert {path.name: path.read_text() for path in victim.iterdir()} == {"1-1": "keep"}
 
 
 def test_a_link_in_the_place_of_the_drafts_or_of_the_journal_is_refused(tmp_path: Path) -> None:
@@ -104,13 +107,37 @@ def test_a_link_in_the_place_of_the_drafts_or_of_the_journal_is_refused(tmp_path
     go(out, jobs)
     (out / ".drafts").rmdir()
     (out / ".drafts").symlink_to(tmp_path)
-    with pytest.raises(OSError, match=r"\.drafts"):
+    with pytest.raises(BadInputError, match=r"out/\.drafts: a link or a file where .*remove it"):
         go(out, jobs)
     (out / ".drafts").unlink()
-    (out / "journal.sqlite").rename(tmp_path / "journal.sqlite")
-    (out / "journal.sqlite").symlink_to(tmp_path / "journal.sqlite")
-    with pytest.raises(BadInputError, match="is a link"):
+    for name in ("journal.sqlite", "journal.sqlite-wal"):
+        (out / name).touch()
+        (out / name).rename(tmp_path / name)
+        (out / name).symlink_to(tmp_path / name)
+        with pytest.raises(BadInputError, match=f"{name}: the journal is a link"):
+            go(out, jobs)
+        (out / name).unlink()
+        (tmp_path / name).rename(out / name)
+
+
+def test_a_link_or_a_folder_in_the_place_of_the_lock_is_refused(tmp_path: Path) -> None:
+    jobs, out = lines_file(tmp_path / "in", 1), tmp_path / "out"
+    go(out, jobs)
+    (out / ".lock").unlink()
+    (out / ".lock").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(BadInputError, match=r"where the lock \.lock belongs"):
         go(out, jobs)
+    (out / ".lock").unlink()
+    (out / ".lock").mkdir()
+    with pytest.raises(BadInputError, match=r"where the lock \.lock belongs"):
+        go(out, jobs)
+    assert not (tmp_path / "elsewhere").exists()
+
+
+def test_an_output_folder_that_cannot_be_made_is_a_mistake_of_the_user(tmp_path: Path) -> None:
+    jobs = lines_file(tmp_path / "in", 1)
+    with pytest.raises(BadInputError, match="choose another folder with -o"):
+        go(jobs / "out", jobs)
 
 
 def test_a_draft_that_is_not_there_is_no_failure_of_its_job(tmp_path: Path) -> None:

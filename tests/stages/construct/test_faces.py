@@ -22,7 +22,7 @@ from stages.model.surface import Plate, RuledSurface, Surface
 from stages.model.tolerances import Tolerances
 from stages.unroll import unroll
 from stages.verify import verify
-from tests import cad
+from tests import cad, cadmeasured
 from tests.near import assert_near, assert_relative
 
 TOL = Tolerances()
@@ -94,11 +94,13 @@ def test_every_face_has_the_area_that_opencascade_measures(
     tmp_path: Path, name: str, write: Callable[[Path, TopoDS_Shape], Path]
 ) -> None:
     file = write(tmp_path / ("a.step" if write is cad.step else "a.iges"), SHAPES[name]())
-    body, theirs = cad.read(file), cad.faces(cad.reread(file))
+    body, theirs = cad.read(file), cad.faces(cadmeasured.reread(file))
     assert len(body.faces) == len(theirs)
     for place, (face, its) in enumerate(zip(body.faces, theirs, strict=True)):
         _, checked, report = laid(SHAPES[name], place) if write is cad.step else flat(cad.part(face))
-        assert_relative(areas(report), [cad.fine_area(its)] * 2, bound=1e-9, why="edges lie off their faces by 1e-8")
+        assert_relative(
+            areas(report), [cadmeasured.fine_area(its)] * 2, bound=1e-9, why="edges lie off their faces by 1e-8"
+        )
         warp = checked.metric("max_warp_deg")
         assert warp.evidence == "proved"
         assert warp.value is not None and warp.value <= 1e-9
@@ -228,7 +230,7 @@ def test_a_channel_is_one_blank_with_its_bend_lines(
     (one,) = blanks(body.faces)
     pattern, checked, report = flat(one)
     assert one.name == "part"
-    assert_relative(areas(report), [cad.area(shape, 1e-12)] * 2, bound=1e-12, why="planes and cylinders")
+    assert_relative(areas(report), [cadmeasured.area(shape, 1e-12)] * 2, bound=1e-12, why="planes and cylinders")
     assert len(pattern.inner) == 1
     assert checked.metric("max_warp_deg").evidence == "proved"
     lines = [mark for mark in pattern.marks if mark.layer.startswith("BEND")]
@@ -248,7 +250,7 @@ def test_faces_with_a_fold_between_them_are_blanks_of_their_own() -> None:
     counts = [len(one.body.faces) for one in found if one.body is not None and not hasattr(one.body, "vertices")]
     assert sorted(counts) == [1, 1, 1, 1, 3]
     total = sum(areas(flat(one)[2])[1] for one in found)
-    assert_relative(total, cad.area(cad.filleted_box(), 1e-12), bound=1e-12, why="planes and a cylinder")
+    assert_relative(total, cadmeasured.area(cad.filleted_box(), 1e-12), bound=1e-12, why="planes and a cylinder")
 
 
 def test_a_ring_of_faces_is_cut_open_and_says_where(tmp_path: Path) -> None:

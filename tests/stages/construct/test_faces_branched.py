@@ -20,7 +20,7 @@ from stages.model.material import Part
 from stages.model.report import Finding, Outcome
 from stages.model.surface import BranchedSurface, Surface
 from stages.model.tolerances import Tolerances
-from tests import cad, cadshells
+from tests import cad, cadrhino, cadshells
 from tests.near import assert_near
 
 TOL = Tolerances()
@@ -224,7 +224,7 @@ def test_loose_surfaces_by_rhino_that_bend_in_two_directions_are_one_blank(tmp_p
     plate = surface_between([(0, 0, 0), (60, 0, 0)], [(0, 40, 0), (60, 40, 0)])
     right = bent((60, 0, 0), (65 - h, 0, h), (65, 0, 5), (0, 40, 0))
     back = bent((60, 40, 0), (60, 45 - h, h), (60, 45, 5), (-60, 0, 0))
-    body = cad.read(cad.rhino(tmp_path / "a.3dm", plate, right, back))
+    body = cad.read(cadrhino.rhino(tmp_path / "a.3dm", plate, right, back))
     made = face_blanks(cad.part(*body.faces))
     told = [remark.message for one in made for remark in one.remarks]
     assert [indices(one) for one in made] == [[0, 1, 2]], told

@@ -19,7 +19,7 @@ from stages.geometry.curves import Circular
 from stages.geometry.ruled import between
 from stages.model.cadface import CadEdge, CadFace, CadNet, CadSweep
 from stages.model.tolerances import Tolerances
-from tests import cad
+from tests import cad, cadrhino
 from tests.near import assert_near, assert_relative
 from tests.stages.construct.test_faces_seams import area, codes, measured, rim, window
 
@@ -37,7 +37,7 @@ def frustum() -> rhino3dm.NurbsSurface:
 def net(make: Callable[[], object]) -> CadFace:
     """Return the closed face of a body by Rhino."""
     with TemporaryDirectory() as folder:
-        faces = cad.read(cad.rhino(Path(folder) / "a.3dm", make())).faces
+        faces = cad.read(cadrhino.rhino(Path(folder) / "a.3dm", make())).faces
     return next(face for face in faces if isinstance(face.surface, CadNet) and ruled_form(face.surface) is not None)
 
 
@@ -54,8 +54,8 @@ def bare(face: CadFace) -> CadFace:
 @pytest.mark.parametrize(
     ("make", "formula"),
     [
-        (cad.rhino_pipe, 2 * pi * 20 * 50),
-        (cad.rhino_cone, pi * 30 * 50),
+        (cadrhino.rhino_pipe, 2 * pi * 20 * 50),
+        (cadrhino.rhino_cone, pi * 30 * 50),
         (frustum, pi * (20 + 35) * 25),
     ],
 )
@@ -112,7 +112,7 @@ def test_a_face_that_does_not_go_round_is_left_as_it_is() -> None:
     face = pipe(window(0.5, 1.5))
     assert isinstance(face.surface, CadSweep)
     assert opened(face, face.surface) == (face, face.surface)
-    whole = net(cad.rhino_pipe)
+    whole = net(cadrhino.rhino_pipe)
     form = ruled_form(whole.surface)
     assert isinstance(form, Rails)
     assert opened(whole, form) == (whole, form)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from stages.construct.meshdevelopable import Found, developable
+from stages.errors import NoSolutionError
 from stages.geometry.arrays import Points2
 from stages.geometry.development import develop
 from stages.geometry.mesh import Mesh
@@ -110,3 +111,11 @@ def test_the_chart_takes_flat_points_back() -> None:
     places = np.random.default_rng(0).uniform(0.05, 0.95, (50, 2))
     points = develop((patch,)).pieces[0].positions(places[:, 0], places[:, 1])
     assert_near(chart.places(points), places, bound=1e-9, why="Newton's method from a neighbour, to rounding")
+
+
+def test_a_flat_point_that_newtons_method_does_not_come_to_is_no_solution() -> None:
+    """Far from every vertex there is nothing near to start from."""
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 12), np.linspace(0.0, 1.0, 20))
+    chart = Developed(patches(OBLIQUE_CONE)[0], np.column_stack([u.ravel(), v.ravel()]))
+    with pytest.raises(NoSolutionError, match="place of a flat point on its patch"):
+        chart.places(np.array([[1e4, -1e4]]))

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from stages.construct import construct
-from stages.construct.meshes import straight_loops
 from stages.construct.sets import parts_of
 from stages.geometry.arrays import norm
 from stages.geometry.mesh import Mesh
@@ -84,7 +83,7 @@ def test_a_tube_is_cut_and_its_seam_straight_in_the_loop_that_is_refitted() -> N
     outcome = made(tube(30, 8, (50.0, 20.0), 60.0))
     found = surface(outcome)
     assert number(outcome, "seams") == 1
-    (loop,) = straight_loops(found)
+    (loop,) = found.straight_loops
     one, other = found.seams[0]
     assert len(found.loops[0]) - len(loop) == 2 * (len(one) - 2)
     assert {one[0], one[-1], other[0], other[-1]} <= set(loop.tolist())

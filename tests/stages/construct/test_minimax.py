@@ -48,17 +48,22 @@ def test_the_printed_parameters_are_worse() -> None:
     assert_near(largest_speed(r)[0], 0.698416891747, bound=1e-12, why="12 digits are given")
 
 
+@pytest.fixture(scope="module")
+def best() -> minimax.Minimax:
+    """Return the solution of Example 3, found once."""
+    return solve(*ends())
+
+
 @settings(max_examples=8)
-@given(st.integers(0, 10**6))
-def test_no_neighbour_of_the_solution_is_better(seed: int) -> None:
+@given(seed=st.integers(0, 10**6))
+def test_no_neighbour_of_the_solution_is_better(best: minimax.Minimax, seed: int) -> None:
     start, end = ends()
-    found = solve(start, end)
     random = np.random.default_rng(seed)
     for step in (1e-2, 1e-4):
-        shape = np.array(found.shape) * (1.0 + step * random.normal(size=4))
+        shape = np.array(best.shape) * (1.0 + step * random.normal(size=4))
         a0, a1, b0, b1 = (Fraction(float(x)) for x in shape)
         other = directrix(End(start.P, start.T, start.N, start.k, a0, b0), End(end.P, end.T, end.N, end.k, a1, b1))
-        assert largest_speed(other)[0] >= found.speed_max * (1.0 - 10 * GAP)
+        assert largest_speed(other)[0] >= best.speed_max * (1.0 - 10 * GAP)
 
 
 def line(beta: str) -> tuple[End, End]:
@@ -81,6 +86,15 @@ def test_a_straight_directrix_gets_even_speed_and_says_that_beta_is_at_its_bound
 def test_an_exchange_that_does_not_close_is_no_solution(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(minimax, "EXCHANGES", 1)
     with pytest.raises(NoSolutionError, match=r"Theorem 2\.3"):
+        solve(*ends())
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3])
+def test_a_minimiser_that_stops_early_is_found_out(steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After so few steps t is the true maximum already, but not the smallest one."""
+    monkeypatch.setattr(minimax, "SLSQP", {"ftol": 1e-15, "maxiter": steps})
+    monkeypatch.setattr(minimax, "GAP", 1.0)
+    with pytest.raises(NoSolutionError, match="minimum of the largest speed"):
         solve(*ends())
 
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from stages.geometry.arrays import Array, ArrayValue, cross2, dot, norm, unit
+from stages.geometry.arrays import Array, ArrayValue, cross2, diagonal, dot, norm, similarities, unit
 from stages.geometry.curves import Bezier, rational
 from stages.geometry.development import develop
 from stages.geometry.plane import CircularArc, Segment
@@ -92,3 +92,19 @@ def test_products_and_lengths_go_along_the_last_axis() -> None:
 
 def test_a_zero_vector_has_no_direction_and_stays_zero() -> None:
     assert unit(np.array([[3.0, 0.0, 4.0], [0.0, 0.0, 0.0]])).tolist() == [[0.6, 0.0, 0.8], [0.0, 0.0, 0.0]]
+
+
+def test_the_diagonal_of_a_box_does_not_depend_on_where_it_lies() -> None:
+    corners = np.array([[0.0, 0.0], [3.0, 1.0], [1.0, 4.0]])
+    assert diagonal(corners) == diagonal(corners - 7.0) == 5.0
+
+
+def test_similarities_add_up_to_the_singular_values() -> None:
+    """Against numpy's, on matrices that turn, mirror, shear and flatten."""
+    every = np.random.default_rng(3).normal(size=(50, 2, 2))
+    every[0] = [[0.0, -2.0], [2.0, 0.0]]
+    every[1] = [[1.0, 0.0], [0.0, -3.0]]
+    every[2] = [[1.0, 2.0], [2.0, 4.0]]
+    similar, mirrored = similarities(every[..., 0], every[..., 1])
+    found = np.stack([similar + mirrored, np.abs(similar - mirrored)], axis=1)
+    assert_near(found, np.linalg.svd(every)[1], bound=1e-14, why="some ten roundings of numbers up to 5")

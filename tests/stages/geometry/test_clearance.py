@@ -4,6 +4,7 @@ from math import inf, pi, sqrt, tan
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -21,6 +22,7 @@ from stages.geometry.clearance import (
     pieces,
     point_distances,
 )
+from stages.geometry.enclosed import inside, inside_own
 from tests.near import assert_near
 
 BOUND_MM = 1e-12
@@ -193,3 +195,24 @@ def test_pieces_between_points_are_those_of_the_path() -> None:
         made.centre, np.where(known.bulge[:, None] == 0.0, 0.0, centres(path)), bound=BOUND_MM, why="one formula"
     )
     assert made.bulge[3] == 0.0, "flatter than any rounding"
+
+
+def test_points_are_inside_their_own_contours_as_shapely_says() -> None:
+    """Contours with lines, shallow arcs and arcs beyond a half circle, points all over each; none next to an edge."""
+    rng = np.random.default_rng(11)
+    square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]])
+    bulges = [[0.0, 0.0, 0.0, 0.0], [0.3, -0.2, 0.0, 0.1], [1.4, 0.0, -0.3, 0.0], [-0.2, 0.4, 1.0, -0.1]]
+    paths = [ArcPath(square + 40.0 * k, np.array(row), closed=True) for k, row in enumerate(bulges)]
+    some = [pieces(path) for path in paths]
+    owner = np.repeat(np.arange(len(some)), [one.bulge.size for one in some])
+    own = rng.integers(0, len(paths), 2000)
+    points = rng.uniform(-12.0, 22.0, (2000, 2)) + 40.0 * own[:, None]
+    regions = [shapely.Polygon(polygon(path, accuracy=1e-4)) for path in paths]
+    wanted = np.array([regions[k].contains(shapely.Point(point)) for k, point in zip(own, points, strict=True)])
+    near = [regions[k].boundary.distance(shapely.Point(point)) for k, point in zip(own, points, strict=True)]
+    clear = np.array(near) > 1e-3
+    found = inside_own(points, own, joined(some), owner)
+    assert (found == wanted)[clear].all()
+    assert 100 < np.count_nonzero(wanted) < 1900
+    for k, one in enumerate(some):
+        assert (inside(points[own == k], one) == found[own == k]).all(), "one contour after the other"

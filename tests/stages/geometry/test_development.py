@@ -15,6 +15,7 @@ from stages.geometry.arrays import EPS, Array, norm
 from stages.geometry.curves import Circular
 from stages.geometry.development import develop
 from stages.geometry.flatmap import Development
+from stages.geometry.quadrature import beginnings
 from stages.geometry.ruled import RuledPatch, between
 from tests.near import assert_near, assert_relative
 from tests.parts import (
@@ -248,13 +249,12 @@ def test_rulings_that_turn_without_end_are_refused_with_the_number_reached() -> 
         develop((folded,))
 
 
-@pytest.mark.parametrize("name", ["_starts", "MOST_TURN"])
+@pytest.mark.parametrize("name", ["beginnings", "MOST_TURN"])
 def test_the_closed_forms_above_see_a_planted_fault(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     if name == "MOST_TURN":
         monkeypatch.setattr(development, "MOST_TURN", 100.0)
     else:
-        starts = development._starts
-        monkeypatch.setattr(development, "_starts", lambda local, start: starts(local, start) * (1.0 + 1e-12))
+        monkeypatch.setattr(development, "beginnings", lambda local, start: beginnings(local, start) * (1.0 + 1e-12))
     with pytest.raises(AssertionError):
         test_a_right_frustum_unrolls_to_its_sector(3, 0, 0, 360)
 

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from stages.errors import NoSolutionError
 from stages.geometry.arclength import length_between, reached, speed_of
 from stages.geometry.arrays import EPS, Points2, Values
-from stages.geometry.evenly import along, measured
+from stages.geometry.evenly import Measured, along, measured
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from tests.near import assert_near, assert_relative
 
@@ -63,3 +64,10 @@ def test_what_is_beyond_an_end_lies_at_that_end() -> None:
     number, t = along(known, np.array([-5.0, 1e3]))
     assert number.tolist() == [0, 2]
     assert_near(t, [0.0, 1.0], bound=4 * EPS, why="clipped to the chain")
+
+
+def test_a_length_that_is_not_met_is_no_solution() -> None:
+    """A table of lengths that falls where it should rise leaves Newton's method where it began."""
+    wrong = Measured(np.array([0.0, 1.0]), np.array([[1.0, -1.0]]), np.array([0.0, 2.0]))
+    with pytest.raises(NoSolutionError, match="place at a length: reached 1 mm"):
+        wrong.parameters(np.array([0.5]))

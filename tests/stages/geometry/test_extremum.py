@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import EPS, Values
-from stages.geometry.extremum import maximum
+from stages.geometry.extremum import maximum, minimum
 from tests.near import assert_near
 
 
@@ -42,3 +42,8 @@ def test_what_is_not_a_number_is_passed_over() -> None:
 
 def test_an_infinite_value_is_the_largest() -> None:
     assert maximum(lambda v: np.where(v == 1.0, np.inf, v)) == (np.inf, 1.0)
+
+
+def test_the_least_value_is_the_largest_of_the_opposite() -> None:
+    value, where = minimum(lambda v: (v - 0.3) ** 2 + 2.0)
+    assert_near([value, where], [2.0, 0.3], bound=1e-7, why="flat to rounding about its place")

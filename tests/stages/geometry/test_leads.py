@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from stages.geometry.arcpath import ArcPath, along, backwards, directions, length, transform
-from stages.geometry.clearance import inside, pieces
+from stages.geometry.clearance import pieces
+from stages.geometry.enclosed import inside
 from stages.geometry.leads import Obstacles, off, round_in, straight
 from stages.geometry.rigid import Rigid2
 from tests.near import assert_near

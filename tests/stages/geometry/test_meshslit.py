@@ -4,8 +4,16 @@ import numpy as np
 
 from stages.geometry.arrays import norm
 from stages.geometry.meshcut import along, distance_to, edge_lengths
-from stages.geometry.meshslit import followed, on_border, slit
-from stages.geometry.meshtopology import boundary_loops, edge_numbers, edges_of, euler_characteristic, pieces, pinched
+from stages.geometry.meshslit import followed, slit
+from stages.geometry.meshtopology import (
+    boundary_loops,
+    edge_numbers,
+    edges_of,
+    euler_characteristic,
+    on_border,
+    pieces,
+    pinched,
+)
 from tests.caps import cap
 
 MESH = cap(0.6, cells=16)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stages.geometry.arcpath import ArcPath, area, length
-from stages.geometry.pathparts import begun, direction_at, part, place_at, point_at, settled
+from stages.geometry.pathparts import begun, direction_at, part, place_at, points_at, settled
 from tests.near import assert_near
 
 LENS = ArcPath(
@@ -34,19 +34,17 @@ def test_a_place_is_as_far_along_as_the_part_before_it_is_long(distance: float) 
 
 @given(places)
 def test_begun_elsewhere_a_path_encloses_the_same(place: float) -> None:
-    found = begun(LENS, settled(LENS, place, 0.05))
+    found = begun(LENS, float(settled(LENS, np.array([place]), 0.05)[0]))
     assert_near([area(found), length(found)], [area(LENS), length(LENS)], bound=1e-11, why="rounding at 80 mm2")
 
 
 def test_a_place_beside_a_vertex_is_the_vertex() -> None:
-    assert settled(LENS, 1.001, 0.05) == 1.0
-    assert settled(LENS, 1.999, 0.05) == 2.0
-    assert settled(LENS, 1.5, 0.05) == 1.5
+    assert settled(LENS, np.array([1.001, 1.999, 1.5]), 0.05).tolist() == [1.0, 2.0, 1.5]
     assert begun(LENS, 2.0).vertices[0].tolist() == [10.0, 8.0]
 
 
 @pytest.mark.parametrize("place", [0.0, 0.3, 1.0, 2.75])
 def test_the_direction_is_that_of_a_short_step(place: float) -> None:
-    step = point_at(LENS, place + 1e-6) - point_at(LENS, place)
+    step = np.diff(points_at(LENS, np.array([place, place + 1e-6])), axis=0)[0]
     along = np.array([np.cos(direction_at(LENS, place)), np.sin(direction_at(LENS, place))])
     assert_near(step / np.hypot(*step), along, bound=1e-6, why="half a step's turn")

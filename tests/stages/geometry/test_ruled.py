@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from stages.geometry import ruled
-from stages.geometry.arrays import EPS, Array, dot, norm, unit
+from stages.geometry.arrays import EPS, Array, diagonal, dot, norm, unit
 from stages.geometry.curves import Circular, bezier, exactly
 from stages.geometry.ruled import RuledPatch, between, end_normals, frames
 from tests.near import assert_near, assert_relative
@@ -202,7 +202,7 @@ def test_a_minimal_surface_has_no_curvature_across_its_rulings_however_its_edges
 
 
 def test_the_box_of_points_has_their_diagonal() -> None:
-    assert ruled.box(np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 1.0], [1.0, -0.0, 2.0]])) == 3.0
+    assert diagonal(np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 1.0], [1.0, -0.0, 2.0]])) == 3.0
 
 
 def test_a_helicoid_has_the_curvature_of_its_closed_form() -> None:

@@ -6,8 +6,7 @@ from stages.geometry.intrinsic import laid
 from stages.geometry.meshcurvature import defects
 from stages.geometry.meshflat import by_side
 from stages.geometry.meshlengths import chords
-from stages.geometry.meshslit import on_border
-from stages.geometry.meshtopology import edges_of
+from stages.geometry.meshtopology import edges_of, on_border
 from stages.geometry.scalefactor import scale_factors
 from tests.caps import RADIUS, cap
 from tests.near import assert_near

@@ -298,12 +298,3 @@ def test_a_spot_far_away_is_a_plan_that_is_far_away_and_no_trouble() -> None:
 def test_small_and_large_parts_are_posed_alike() -> None:
     _, first, found = posed([disc("d", 0.5, 2), disc("D", 140.0, 3)], [SHEET], NestOptions(0.1))
     assert motions(plan_of(found.request.start, found)) == [pytest.approx(one, abs=ROUNDING) for one in motions(first)]
-
-
-def test_no_more_threads_search_than_cores_may_be_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
-    monkeypatch.setattr(search.os, "sched_getaffinity", lambda _: {0, 3, 5})
-    assert search.threads() == len({0, 3, 5})
-    for said, wanted in (("1", 1), ("0", 1), ("64", 3), ("all", 3)):
-        monkeypatch.setenv("NUMBA_NUM_THREADS", said)
-        assert search.threads() == wanted

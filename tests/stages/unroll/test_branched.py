@@ -25,7 +25,7 @@ from stages.model.surface import BranchedSurface, Certificate
 from stages.model.tolerances import Tolerances
 from stages.unroll import unroll
 from stages.verify import verify
-from tests import cad, cadshells
+from tests import cad, cadmeasured, cadshells
 from tests.near import assert_near, assert_relative
 
 TOL = Tolerances()
@@ -37,7 +37,7 @@ def blank(make: Callable[[], list[TopoDS_Shape]]) -> tuple[Part, float]:
     shape = cadshells.sewn(make())
     with TemporaryDirectory() as folder:
         (one,) = face_blanks(cad.part(*cad.read(cad.step(Path(folder) / "a.step", shape)).faces))
-    return one, cad.area(shape)
+    return one, cadmeasured.area(shape)
 
 
 def surface(part: Part) -> BranchedSurface:

@@ -3,6 +3,8 @@
 from dataclasses import replace
 from fractions import Fraction
 
+import pytest
+
 from stages.geometry.development import develop
 from stages.geometry.ruled import part as stretch_of
 from stages.model.surface import RuledSurface
@@ -11,8 +13,9 @@ from stages.unroll import outline, unroll
 from stages.unroll.divide import blanks
 from stages.unroll.features import on_strip
 from stages.verify import verify
-from tests.parts import construct, part
+from tests.parts import construct, part, passage
 from tests.stages.geometry.test_drill import HALF_TUBE
+from tests.stages.unroll.test_divide import WAVY
 from tests.stages.unroll.test_features import circle
 
 
@@ -55,3 +58,14 @@ def test_every_hole_of_a_divided_part_comes_out_on_one_blank() -> None:
     inner = [[hole.name for hole in pattern.inner] for pattern in patterns if pattern is not None]
     assert len(inner) == 3 and all(inner)
     assert [name for names in inner for name in names] == [f"hole-{k}" for k in range(1, 11)]
+
+
+@pytest.mark.parametrize(("v", "on"), [("4", [False, True]), ("3.999", [True, False]), ("8", [False, True])])
+def test_a_mark_on_the_cut_is_drawn_on_the_blank_that_begins_there_alone(v: str, on: list[bool]) -> None:
+    """The cone of eight triangles is cut at v = 4, where a patch ends too; v = 8 is the end of the part."""
+    marks = [{"kind": "point", "name": "here", "at": ["0.5", v], "size": 1}]
+    whole = passage(WAVY, cut="auto", mark=marks).certificate
+    assert whole is not None
+    patterns = [unroll(blank, Tolerances()).product for blank in blanks(whole, Tolerances())]
+    drawn = [{mark.name for mark in pattern.marks} for pattern in patterns if pattern is not None]
+    assert ["here" in names for names in drawn] == on

@@ -8,6 +8,7 @@ from stages.geometry import development, quadrature
 from stages.geometry.arrays import Array
 from stages.geometry.development import develop
 from stages.geometry.flatmap import Development
+from stages.geometry.quadrature import beginnings
 from tests.near import assert_near
 from tests.parts import EXAMPLE_1, QUINTIC_TANGENT, patches
 from tests.rewritten import in_pieces
@@ -41,10 +42,9 @@ def test_one_wrong_entry_of_the_antiderivative_is_seen(
 @pytest.mark.parametrize("channels", [1, 2])
 def test_a_dropped_offset_of_a_panel_is_seen(name: str, channels: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """The last panel begins where the first one does, or with its angle."""
-    honest = development._starts
 
     def dropped(local: Array, start: Array) -> Array:
-        begun = honest(local, start)
+        begun = beginnings(local, start)
         if local.shape[2] == channels:
             begun[-1] = begun[0]
         return begun
@@ -52,7 +52,7 @@ def test_a_dropped_offset_of_a_panel_is_seen(name: str, channels: int, monkeypat
     made = of(SHAPES[name]).pieces[0]
     turns = bool(made.phi[-1, 0] != made.phi[0, 0])
     assert made.breaks.size > 2, "the test needs more than one panel"
-    monkeypatch.setattr(development, "_starts", dropped)
+    monkeypatch.setattr(development, "beginnings", dropped)
     assert (value(distortion(of(SHAPES[name])), "metric_error") > SEEN) is (turns or channels == 2)
 
 

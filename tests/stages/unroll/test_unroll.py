@@ -233,6 +233,9 @@ def test_a_plate_with_a_contour_across_itself_is_refused(where: str) -> None:
     assert found.codes("unroll") == ["contour-crosses-itself"]
     # the lines cross at 6 mm: lobes of 6 * 15 / 2 and 4 * 10 / 2 mm2, and the smaller one is inside out
     assert_near(found.value("unroll", "overlap_mm2"), 20.0, bound=1e-12, why="closed form")
+    assert found.metric("unroll", "overlap_mm2").evidence == "sampled", "only that nothing overlaps is proved"
+    plain = passage({"kind": "flat", "outline": {"polyline": frame}})
+    assert plain.metric("unroll", "overlap_mm2").evidence == "proved"
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,15 @@ def test_a_face_that_the_surface_has_not_is_refused_before_it_is_unrolled(face: 
     assert made.codes("verify", fatal=True) == ["face-changes-side"]
 
 
+def test_a_strain_without_bound_is_told_in_words_and_not_as_a_number() -> None:
+    """A pipe of radius 2 whose sheet of 4.5 lies inside it: the middle of the sheet would have a radius of -0.25."""
+    made = verified(PIPE, "outer", Material(thickness_mm=4.5, max_strain=0.2))
+    (message,) = [one.message for one in made.reports["verify"].findings if one.code == "bend-strain"]
+    assert "stretches without bound" in message
+    assert "inf" not in message
+    assert made.value("verify", "outer_fibre_strain") is None
+
+
 def test_an_inside_face_that_folds_over_itself_is_reported() -> None:
     made = verified(PIPE, "middle", Material(thickness_mm=4.5))
     assert "inside-radius" in made.codes("verify", fatal=False)

@@ -1,5 +1,7 @@
 """Sampled figures against closed forms, and what is said of singular rulings where nothing can be proved."""
 
+from dataclasses import replace
+from fractions import Fraction
 from math import atan, pi, sqrt
 
 import numpy as np
@@ -10,6 +12,7 @@ from stages.geometry.curves import Circular
 from stages.geometry.ruled import RuledPatch, between
 from stages.model.surface import RuledSurface, whole_spans
 from stages.verify import sampled
+from stages.verify.bending import Sharpest, sharpest
 from stages.verify.examined import examine
 from stages.verify.findings import singular_findings
 from tests.near import assert_near, assert_relative
@@ -40,7 +43,16 @@ def test_a_helicoid_has_the_warp_and_curvature_of_its_closed_form(turn: float) -
     assert_relative([found.warp.value, found.gaussian.value], [atan(3.0 / b), b**-2], bound=64 * EPS, why="closed form")
     assert_relative([found.ruling.value], [3.0], bound=16 * EPS, why="closed form")
     assert found.regular
-    assert found.warp.where == {"v": 4 + found.warp.v}
+    assert found.warp.piece == 4
+
+
+def test_a_patch_without_any_normal_is_as_far_from_developable_as_can_be() -> None:
+    """Both directrices run along one line, so that no ruling has a tangent plane: never "exact"."""
+    line = Circular(NONE, X, NONE, NONE, 0.3, 1.0)
+    found = sampled.survey(between(line, line.replace(U=2.0 * X)), 2)
+    assert (found.warp.value, found.warp.piece) == (pi, 2)
+    assert not found.regular
+    assert found.normal.value == 0.0
 
 
 def test_the_largest_curvature_of_a_frustum_is_at_its_smaller_end() -> None:
@@ -89,3 +101,15 @@ def test_a_regular_patch_has_no_singular_ruling() -> None:
 def test_the_turning_of_a_frustum_is_the_angle_of_its_sector() -> None:
     (patch,) = patches(RIGHT_FRUSTUM)
     assert_relative([abs(sampled.turning(patch))], [2 * pi * 1.5 / sqrt(1.5**2 + 16.0)], bound=1e-13, why="closed form")
+
+
+def test_the_place_of_the_sharpest_bend_is_by_the_parts_v() -> None:
+    """A face of a branched surface, whose v does not begin at 0, looked at without knowing how it turns."""
+    quarter = Circular(NONE, 3.0 * X, 2.0 * Z, NONE, 0.0, pi / 2)
+    surface = replace(strip(quarter), spans=((Fraction(7), Fraction(9)),))
+    found = sharpest(surface, None)
+    assert isinstance(found, Sharpest)
+    assert_relative(
+        [found.given_mm], [2.0**2 / 3.0], bound=1e-11, why="b^2 / a at the end of the long axis, to the search"
+    )
+    assert_near(found.where["v"], 7.0, bound=1e-6, why="an end, where the curvature is flat")

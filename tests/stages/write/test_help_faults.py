@@ -12,8 +12,8 @@ from stages.model.helps import Helps
 from stages.write import judged
 from stages.write.helps import helped
 from stages.write.sheets import cut_drawings
+from tests.stages.write.helpcases import LEADS, TABS, machine, usual
 from tests.stages.write.patterns import nesting, plate, sector
-from tests.stages.write.test_helps import LEADS, TABS, machine, usual
 
 
 def leads_of(document: Document) -> list[object]:

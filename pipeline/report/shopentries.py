@@ -1,35 +1,21 @@
-"""What the traveller reads of a report and of the side files beside drawings, as values; all else is left aside.
+"""What the shop needs of a report and of the side files beside drawings, typed: for the traveller, and for `compare`.
 
-Lengths are in mm, areas in mm2, angles in degrees, as they stand there.
+What stands there besides is left aside.  Lengths are in mm, areas in mm2, angles in degrees, as they stand there.
 """
 
 from msgspec import Struct, field
 
-from pipeline.report.entries import StageEntry
+from pipeline.report.entries import JobHead, PartHead, SheetHead, StageEntry
 from pipeline.report.nestentries import StockEntry
-from pipeline.sideentries import ContourSide, LayerSide
-from pipeline.sidelines import Radii, RollRow, Thickness
-
-Pair = tuple[float, float]
-
-
-class Bend(Struct, frozen=True):
-    """A row of a bend table; pitch_mm: to the next line, at both ends."""
-
-    name: str
-    angle_deg: float
-    side: str
-    radius_mm: Radii
-    facet_error_mm: float
-    fold: bool
-    pitch_mm: Pair | None = None
+from pipeline.sideentries import ContourSide, Pair
+from pipeline.sidelines import BendRow, RollRow, Thickness
 
 
 class DetailEntry(Struct, frozen=True):
     """What forming needs of a stage's detail."""
 
     thickness: Thickness | None = None
-    bends: tuple[Bend, ...] = ()
+    bends: tuple[BendRow, ...] = ()
     rolls: tuple[RollRow, ...] = ()
 
 
@@ -116,16 +102,10 @@ class FormedEntry(Struct, frozen=True):
     evidence: str
 
 
-class PartEntry(Struct, frozen=True):
-    """A part; reached: its class, null in what was nested from drawings alone."""
+class PartEntry(PartHead, frozen=True, kw_only=True):
+    """A part."""
 
-    name: str
-    quantity: int
-    reached: str | None = field(name="class")
     flat: FlatEntry | None
-    mass_kg: float | None
-    cut_length_mm: float | None
-    pierces: int | None
     stages: tuple[FormingEntry, ...]
     tape: TapeEntry | None = None
     formed: FormedEntry | None = None
@@ -161,20 +141,26 @@ class LayerEntry(Struct, frozen=True):
     colour: int
 
 
+class HelpsEntry(Struct, frozen=True):
+    """Whether contours are written beside the nominal ones, for a beam so wide."""
+
+    beam_mm: float | None = None
+    compensated: bool = False
+
+
 class DrawingsEntry(Struct, frozen=True):
     """How drawings are written."""
 
     layers: dict[str, LayerEntry]
+    helps: HelpsEntry = HelpsEntry()
 
 
-class JobEntry(Struct, frozen=True):
+class JobEntry(JobHead, frozen=True, kw_only=True):
     """Whose job it is; of what was nested from drawings alone not all is known."""
 
-    name: str
     material: MaterialEntry
     customer: str | None = None
     revision: str | None = None
-    digest: str = ""
     process: ProcessEntry | None = None
     tolerance: ToleranceEntry | None = None
     dxf: DrawingsEntry | None = None
@@ -200,18 +186,11 @@ class PlacementEntry(Struct, frozen=True):
     mirrored: bool
 
 
-class SheetEntry(Struct, frozen=True):
+class SheetEntry(SheetHead, frozen=True, kw_only=True):
     """A nested sheet."""
 
-    stock: str
-    index: int
-    utilisation: float
     file: str | None
     kind: str
-    mass_kg: float | None
-    cut_length_mm: float | None
-    pierces: int | None
-    used_length_mm: float | None
     offcut: OffcutEntry | None
     placements: tuple[PlacementEntry, ...]
 
@@ -236,4 +215,3 @@ class SideEntry(Struct, frozen=True):
     """The side file of a drawing: what is cut in it, in the order in which the file has it."""
 
     contours: tuple[ContourSide, ...]
-    layers: dict[str, LayerSide]
