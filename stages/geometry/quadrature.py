@@ -21,8 +21,9 @@ ROUNDING = 8 * 4e-15
 """A Legendre coefficient below this share of the scale is noise: 16 products of doubles, summed with both signs."""
 DEPTH = 40
 """A panel is halved at most so often: 2**-40 of the whole, where any integrable singularity has lost its weight."""
-MOST_PANELS = 1024
-"""So many panels at once are noise, not a function: an end singularity takes 2 per halving, a hard patch some 100."""
+MOST_PANELS = 2048
+"""So many panels at once are noise, not a function: an end singularity takes 2 per halving, a hard patch some 100,
+rails that turn where they touch up to 2000."""
 
 NODES, WEIGHTS = legendre.leggauss(ORDER)
 
