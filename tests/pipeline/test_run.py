@@ -122,7 +122,7 @@ def test_one_rejected_part_stops_the_nest_but_the_others_are_written_flat(
     stages(verify=lambda part, _: refused if part.name == "cone" else Outcome(part, passed))
     written: list[list[str]] = []
 
-    def write(patterns: list[Pattern], nesting: object, _: object) -> Outcome[object]:
+    def write(patterns: list[Pattern], nesting: object, *_: object) -> Outcome[object]:
         assert nesting is None
         written.append([pattern.part for pattern in patterns])
         return Outcome((), StageReport("write", "x"))

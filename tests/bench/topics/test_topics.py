@@ -10,6 +10,7 @@ import pytest
 
 from stages.geometry.plane import CircularArc
 from tests.bench.rows import Asked, Row, identity
+from tests.bench.sections import alone
 from tests.bench.timing import measured
 from tests.bench.topics import batches, drawing, growth, nesting, starting, unrolling, verifying
 from tests.bench.topics.flatteners import LIBIGL
@@ -20,7 +21,17 @@ QUICK = Asked("quick")
 
 
 def made(rows: Callable[[Asked], object]) -> list[Row]:
-    found = list(rows(QUICK))
+    return sound(list(rows(QUICK)))
+
+
+def made_alone(name: str) -> list[Row]:
+    """The rows of a topic that forks, in a process of its own: this one has servers of other tests."""
+    section = alone(name, QUICK)
+    assert not section.failed
+    return sound(list(section.rows))
+
+
+def sound(found: list[Row]) -> list[Row]:
     assert len({identity("topic", row) for row in found}) == len(found), "each has an anchor of its own"
     assert all(row.seconds is None or (isfinite(row.seconds) and row.seconds > 0.0) for row in found)
     return found
@@ -97,13 +108,13 @@ def test_a_nest_of_ours_is_valid_and_has_a_density() -> None:
 
 
 def test_pools_and_batches_run_the_same_jobs() -> None:
-    rows = made(batches.rows)
+    rows = made_alone("batch")
     assert [row.size for row in rows if row.what == batches.WHAT] == ["40 jobs"] * 2
     assert all((row.figure or 0.0) > 0.0 for row in rows if row.what == batches.RATE)
 
 
 def test_every_series_grows_and_one_that_fails_is_no_figure() -> None:
-    rows = made(growth.rows)
+    rows = made_alone("growth")
     assert [row.figure is None for row in rows] == [True, False] * len(growth.SERIES)
     with pytest.raises(RuntimeError, match="not made"):
         list(growth.series("none", "parts", lambda *_: lambda: False, (1,), 1))

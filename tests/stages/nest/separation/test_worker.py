@@ -159,7 +159,7 @@ def test_regions_holes_and_other_hands_are_kept_to(monkeypatch: pytest.MonkeyPat
         Spot(0, 0, 0.0, 20.0, 20.0), Spot(1, 0, 0.0, 20.0, 20.0), Spot(1, 1, 0.0, 20.0, 60.0),
         Spot(1, 2, 0.0, 120.0, 40.0),
     )  # fmt: skip
-    found = told(ask(problem, start, seconds=1.0), monkeypatch)
+    found = told(ask(problem, start, seconds=8.0), monkeypatch)
     assert used(problem, found[-1])[0] == 1
     for spots in found:
         assert_legal(problem, spots)
