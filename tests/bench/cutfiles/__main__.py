@@ -14,7 +14,7 @@ MEASURES: dict[tuple[str, ...], Callable[[], Row | Iterable[Row]]] = {
     ("W5",): contents.smoothness,
     ("W6",): contents.wholeness,
     ("W7", "W8"): contents.judged,
-    ("W9", "W10"): contents.library,
+    ("W9", "W10"): contents.as_ezdxf_reads,
     ("W11",): figures.round_trip,
     ("W12",): figures.bends,
     ("W13",): program.same_bytes,

@@ -124,7 +124,7 @@ def judged() -> Iterator[Row]:
     yield counted("W8", "no cut twice", wrong["W8"], total, how)
 
 
-def library() -> Iterator[Row]:
+def as_ezdxf_reads() -> Iterator[Row]:
     """W9 and W10: sorts of entities, and what ezdxf says of the files."""
     foreign, audited, extents, total = list[str](), list[str](), list[Worst](), 0
     for one, path, text in drawings():
