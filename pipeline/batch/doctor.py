@@ -159,7 +159,8 @@ def child() -> Found:
     finally:
         local.close(now=True)
     said = f"ready after {perf_counter() - start:.1f} s, {record.cause}"
-    return Found("child", record.status == "made", said, f"see what `{sys.executable} -m {WARM}` says")
+    remedy = f"see what `{sys.executable} -m {WARM}` says, and have TMPDIR name a folder with a short path"
+    return Found("child", record.status == "made", said, remedy)
 
 
 def resident(_work: Work) -> Record:

@@ -90,7 +90,8 @@ class Slot:
         if isinstance(error, TimeoutError) and self.pending is not None and self.pending.done():
             return "timed-out", f"more than {work.limits.wall_s:g} s", True
         self.give_up()
-        return "crashed", f"lost with its pool ({type(error).__name__}: {error})", False
+        first = error.__cause__ or error  # Pebble says only that the pool is broken
+        return "crashed", f"lost with its pool ({type(first).__name__}: {first})", False
 
     def interrupt(self) -> None:
         """Have the job that runs, if any, killed; its record says that it was no failure of its own."""

@@ -111,7 +111,7 @@ def fault_of(drawn: Drawn, root: Path) -> Fault | None:
     file = root / drawn.name
     file.write_bytes(drawn.content)
     (root / "tmp").mkdir()
-    tempfile.tempdir = str(root / "tmp")
+    temporary, tempfile.tempdir = tempfile.tempdir, str(root / "tmp")
     WATCH.root, WATCH.seen = str(root), []
     start = process_time()
     try:
@@ -122,7 +122,7 @@ def fault_of(drawn: Drawn, root: Path) -> Fault | None:
     except Exception as error:
         return _fault("traceback", error)
     finally:
-        WATCH.root = None
+        WATCH.root, tempfile.tempdir = None, temporary
     seconds = process_time() - start
     if seconds > LIMIT_S:
         return Fault("slow", "in one call", f"{seconds:.2f} s of computing")

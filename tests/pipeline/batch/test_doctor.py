@@ -3,6 +3,8 @@
 import json
 import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -68,6 +70,17 @@ def test_a_child_starts_and_one_that_does_not_is_told(monkeypatch: Patch) -> Non
     assert not bad.good
     assert "SIGABRT" in bad.line()
     assert doctor.WARM in bad.remedy
+
+
+def test_a_child_that_cannot_be_reached_is_told_with_what_the_system_says(tmp_path: Path) -> None:
+    """The path of a socket has at most 107 bytes (unix(7)), and children are started over one below TMPDIR."""
+    deep = tmp_path / ("d" * 100)
+    deep.mkdir()
+    words = (sys.executable, "-c", "from pipeline.batch.doctor import child; print(child().line())")
+    ended = subprocess.run(words, env={**os.environ, "TMPDIR": str(deep)}, capture_output=True, text=True, check=True)
+    assert ended.stdout.startswith("NOT OK  child")
+    assert "AF_UNIX path too long" in ended.stdout
+    assert "TMPDIR" in ended.stdout
 
 
 def test_files_systems_that_count_no_files_are_not_blamed(monkeypatch: Patch) -> None:
