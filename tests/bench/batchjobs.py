@@ -15,7 +15,7 @@ SAMPLES = (
 batch of thousands is so in any order.  `bag/sewn` alone takes a quarter of the time of all, and is left out."""
 SEARCHED = ("strakes/job", "hides/job", "hopper/job")
 """Samples whose parts take more than one sheet, or a hide."""
-REPEATS = 2
+REPEATS = 6
 
 
 def one_file(work: Work) -> Record:
