@@ -92,6 +92,7 @@ def main() -> None:
         call(PYTHON, *words)
     if name == "demo":
         print(f"The report, the cut files and a picture of every part lie in {ROOT / DEMO[1]}")
+        print(f"The command planish for your own parts: {PYTHON.with_name('planish')}")
 
 
 if __name__ == "__main__":

@@ -55,6 +55,11 @@ class Comparison:
         return sum(passed is False for passed in self._verdicts())
 
     @property
+    def unjudged(self) -> int:
+        """Return how many readings and points no tolerance is known of."""
+        return sum(passed is None for passed in self._verdicts())
+
+    @property
     def count(self) -> int:
         """Return how many readings and points there are."""
         return sum(1 for _ in self._verdicts())

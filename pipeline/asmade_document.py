@@ -143,12 +143,19 @@ def compare_lines(made: Comparison) -> Iterator[str]:
 def verdict_line(made: Comparison) -> str:
     """Return the outcome in one line."""
     unsure = sum(one.sure is False for one in made.dimensions)
-    parts = [f"{made.count} measured", f"{made.failed} out of tolerance" if made.failed else "all within tolerance"]
-    unjudged = sum(one.passed is None for one in made.dimensions)
-    parts += [f"{unjudged} without a tolerance"] if unjudged else []
+    parts = [f"{made.count} measured", *_judged(made)]
+    parts += [f"{made.unjudged} without a tolerance"] if made.unjudged else []
     parts += [f"{unsure} nearer to the limit than the instrument can tell (?)"] if unsure else []
     parts += [f"{made.left} lines left empty"] if made.left else []
     return "; ".join(parts)
+
+
+def _judged(made: Comparison) -> Iterator[str]:
+    """Yield how what has a tolerance keeps it."""
+    if made.failed:
+        yield f"{made.failed} out of tolerance"
+    elif made.unjudged < made.count:
+        yield f"all {'others ' if made.unjudged else ''}within tolerance"
 
 
 def _worst_first(one: Compared) -> tuple[bool, float, int]:

@@ -203,8 +203,8 @@ def _ellipse(entity: Ellipse, unit: str) -> Piece:
     return Piece((CurveSpec(ellipse=spec),), at, at, closed=True)
 
 
-FULL_ELLIPSE = 1e-9
-"""rad; drawings write a full turn as 6.283185, with more digits or fewer, but never with so small a gap on purpose."""
+FULL_ELLIPSE = 1e-6
+"""rad; drawings write a full turn with six decimals or more, 6.283185 is 3e-7 short; nobody leaves so small a gap."""
 
 
 def _spline(curve: BSpline, unit: str, entity: DXFEntity) -> Piece:

@@ -34,11 +34,18 @@ def helps_of(table: ProcessTable, kerf_mm: float | None, material: Material) -> 
     )
 
 
-def unused(helps: Helps, stock: Sequence[object]) -> tuple[str, ...]:
-    """Return the note that helps do nothing, where there is no stock to cut from."""
-    if stock or not helps.any:
+def help_notes(helps: Helps, kerf_mm: float | None, stock: Sequence[object]) -> tuple[str, ...]:
+    """Return the note that helps do nothing, where there is no stock to cut from, or that they leave out the kerf."""
+    if not helps.any:
         return ()
-    return ("without [[stock]] nothing is written to cut/: offset contours, start points, leads and tabs are left out",)
+    if not stock:
+        return (
+            "without [[stock]] nothing is written to cut/: offset contours, start points, leads and tabs are left out",
+        )
+    if kerf_mm is None and (helps.leads or helps.tabs is not None):
+        how = "tabs are narrower by it, leads come nearer to contours by half of it"
+        return (f"the width of the cut is not known: {how}; give process.kerf or process.type",)
+    return ()
 
 
 def _lead(table: LeadTable | None) -> Lead | None:

@@ -10,7 +10,7 @@ from msgspec import structs
 
 from pipeline.decode import canonical
 from pipeline.dxftables import machine_of
-from pipeline.helps import helps_of, unused
+from pipeline.helps import help_notes, helps_of
 from pipeline.jobfile import JobFile, MaterialTable, ReadJob
 from pipeline.materials import Sourced, look_up
 from pipeline.plaintext import plain
@@ -88,6 +88,7 @@ def _job(read: ReadJob) -> Job:
     process, process_notes = _process(tables.process, material)
     stock = stock_of(tables.stock, tables.material.grain)
     helps = helps_of(tables.process, process.kerf_mm, material)
+    told_of_helps = help_notes(helps, process.kerf_mm, stock.sheets)
     return Job(
         name=tables.job.name or plain(read.file.stem),
         parts=tuple(_part(read, number, material, process, stock.sheets) for number in range(len(tables.part))),
@@ -105,7 +106,7 @@ def _job(read: ReadJob) -> Job:
         digest=_digest(read),
         limits=limits_of(tables),
         inputs=read.inputs,
-        notes=(*read.notes, *material_notes, *process_notes, *stock.told, *unused(helps, stock.sheets)),
+        notes=(*read.notes, *material_notes, *process_notes, *stock.told, *told_of_helps),
         rates=rates_of(tables.process, tables.nest),
     )
 

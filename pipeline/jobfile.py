@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 from msgspec import Meta, field
 
-from pipeline.decode import Walk, decode
+from pipeline.decode import MOST_COMPLAINTS, Walk, decode
 from pipeline.dxftables import DxfTable
 from pipeline.helps import help_troubles
 from pipeline.jobrules import repeated, taken_by_blanks, too_many_copies
@@ -254,8 +254,14 @@ def read_as(
     except RecursionError:
         raise BadInputError(Problem(DEEP, file=str(file))) from None
     if tables is None:
-        raise BadInputError(*placed(walk.complaints, text, file, set_paths))
+        raise BadInputError(*placed(walk.complaints, text, file, set_paths), *_more(walk, file))
     return tables, sources, ((plain(file.name), sha256(content).hexdigest()), *sources.digests)
+
+
+def _more(walk: Walk, file: FilePath) -> Iterator[Problem]:
+    """Yield that there may be more problems, where so many were found that looking for them ended."""
+    if len(walk.complaints) >= MOST_COMPLAINTS:
+        yield Problem(f"there may be more: only the first {MOST_COMPLAINTS} problems are told", file=str(file))
 
 
 def _unit(raw: dict[str, object]) -> str:

@@ -5,7 +5,8 @@ The job file names it (`nest.layout`), or `--layout` does, which comes first.
 A layout that holds every copy is final: nothing is searched, it is certified and written, and the same layout gives the
 same bytes.  A person may edit it.  Where some placements say `fixed = true`, these stay and all others are placed anew
 around them; where none says so, all that the file holds stay, and the copies that it lacks are placed around them.
-Sheets on which nothing is left go; those after them move up.
+Sheets of one stock go by their numbers, in whatever order the file has them; those on which nothing is left go, and
+those after them move up.
 
 What the file alone shows to be wrong is an error with its line, every one at once; what geometry decides (overlaps,
 gaps, angles) the certifier says.  `fixed` is a wish: it is read, and never written.
@@ -88,11 +89,20 @@ def placed(stored: Stored, stock: Sequence[Sheet], patterns: "Sequence[FlatPatte
     sheets = {sheet.id: sheet for sheet in stock}
     numbers: Counter[str] = Counter()
     layouts = []
-    for sheet in stored.sheets:
+    for sheet in in_order(stored.sheets):
         numbers[sheet.stock] += 1
         copies = tuple(Placement(row.part, row.copy, row.motion, row.fixed) for row in sheet.rows)
         layouts.append(SheetLayout(sheets[sheet.stock], numbers[sheet.stock], copies, NO_SHARE))
     return Nesting(tuple(layouts))
+
+
+def in_order(sheets: Sequence[SheetRows]) -> list[SheetRows]:
+    """Return sheets in the order of a file, but those of one stock by their numbers."""
+    rising: dict[str, Iterator[SheetRows]] = {
+        stock: iter(sorted((sheet for sheet in sheets if sheet.stock == stock), key=lambda sheet: sheet.index))
+        for stock in {sheet.stock for sheet in sheets}
+    }
+    return [next(rising[sheet.stock]) for sheet in sheets]
 
 
 def is_whole(stored: Stored, patterns: "Sequence[FlatPattern]") -> bool:

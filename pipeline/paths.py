@@ -5,7 +5,9 @@ import re
 
 Path = tuple[str | int, ...]
 
-_STEP = re.compile(r'\[(?P<index>\d{1,9})\]|(?P<dot>\.)?(?:(?P<bare>[A-Za-z0-9_-]+)|"(?P<quoted>(?:[^"\\]|\\.)*)")')
+_QUOTED = r'"(?P<quoted>(?:[^"\\\x00-\x1f]|\\(?:["\\/bfnrt]|u[0-9A-Fa-f]{4}))*)"'
+"""A string as JSON writes it, so that what it stands for can always be told."""
+_STEP = re.compile(rf"\[(?P<index>\d{{1,9}})\]|(?P<dot>\.)?(?:(?P<bare>[A-Za-z0-9_-]+)|{_QUOTED})")
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from stages.unroll.stitches import Stitches
 
 
+MOST_STITCHES = 10_000
+"""In a row, as many as may be asked for by count."""
+
+
 @dataclass(frozen=True, slots=True)
 class Half:
     """One side of a seam: the part and its seam."""
@@ -130,11 +134,18 @@ def divided(group: Group, lengths: Lengths) -> Division:
         return Division()
     leader, against = group.halves[place], group.turned[place]
     mean = sum(lengths[half.name] for half in group.halves) / len(group.halves)
+    if asked.pitch is not None and mean > MOST_STITCHES * float(asked.pitch):
+        message = f"the stitches of {leader.name}: {mean / float(asked.pitch):.3g} of them on {mean:.5g} mm"
+        message += f", at most {MOST_STITCHES}; give a larger pitch"
+        return Division(findings=((leader.part.name, Finding("stitch-too-many", message, fatal=True)),))
     shares = fractions(asked, mean)
     if shares is None:
         message = f"the stitches of {leader.name}: no room for two of them between the ends of {mean:.5g} mm"
         message += "; give less for ends, or a smaller pitch"
         return Division(findings=((leader.part.name, Finding("stitch-no-room", message, fatal=True)),))
+    joined = tuple(_overlapping(group, asked, shares, lengths))
+    if joined:
+        return Division(findings=joined)
     rows: list[tuple[str, Stitches]] = []
     findings: list[tuple[str, Finding]] = []
     for half, turned in zip(group.halves, group.turned, strict=True):
@@ -165,6 +176,17 @@ def fractions(spec: StitchSpec, length_mm: float) -> "Values | None":
 def pitch_mm(shares: "Values", length_mm: float) -> float:
     """Return the distance from stitch to stitch along a seam, mm."""
     return float(shares[-1] - shares[0]) / (len(shares) - 1) * length_mm
+
+
+def _overlapping(group: Group, asked: StitchSpec, shares: "Values", lengths: Lengths) -> Iterator[tuple[str, Finding]]:
+    """Yield the sides on which the holes of a row run into each other: along a curve they are nearer still."""
+    for half in group.halves:
+        pitch, diameter = pitch_mm(shares, lengths[half.name]), (half.stitch or asked).diameter
+        if diameter is not None and pitch <= float(diameter):
+            message = f"{half.name}: {len(shares)} stitch holes of {float(diameter):g} mm are {pitch:.4g} mm apart and "
+            message += "run into each other; give fewer stitches or a smaller diameter"
+            where: dict[str, float | int | str] = {"seam": half.name, "pitch_mm": pitch}
+            yield half.part.name, Finding("stitch-overlap", message, fatal=True, where=where)
 
 
 def _odd_pitch(half: Half, spec: StitchSpec, shares: "Values", length_mm: float) -> Iterator[Finding]:

@@ -9,6 +9,7 @@ A row keeps its own id if the file holds one piece, else it is `<id>-<number or 
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from math import atan2, degrees
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, TypeVar
@@ -61,6 +62,7 @@ def rows_of_drawing(row: StockTable, curves: "Mapping[str, Sequence[Piece]]") ->
         name = blank.id if count == 1 else f"{blank.id}-{i}"
         rows.append(_filled(replace(blank, id=name, outline=outline.spec()), drawn))
     _refuse_strays(rows, drawn)
+    _refuse_holes(rows)
     return tuple(rows)
 
 
@@ -133,6 +135,21 @@ def _refuse_strays(rows: Sequence[StockTable], drawn: Drawn) -> None:
         if not any(_holds(row, (x, y)) for row in rows):
             message = f"the line of direction about ({x:.6g}, {y:.6g}) mm lies outside every outline"
             raise ResolveError("file", message, "move it onto its hide")
+
+
+def _refuse_holes(rows: Sequence[StockTable]) -> None:
+    """Refuse an outline that lies within another: taken for a piece of stock, parts would lie on it and around it."""
+    from pipeline.stockshapes import CHORD_MM
+    from stages.geometry.arcpath import bounds
+    from stages.geometry.usable import within
+
+    paths = [_outline(row) for row in rows] if len(rows) > 1 else []
+    boxes = [bounds(path) for path in paths]
+    for (i, inner), (j, outer) in permutations(enumerate(boxes), 2):
+        around = outer[0] < inner[0] and outer[1] < inner[1] and inner[2] < outer[2] and inner[3] < outer[3]
+        if around and within(paths[i], paths[j], accuracy=CHORD_MM):
+            message = f"the outline {rows[i].id} lies within {rows[j].id}: a hole is no piece of stock"
+            raise ResolveError("file", message, "put holes on the layer of the defects, such as SHEET_KEEPOUT")
 
 
 def _lies_on(row: StockTable, spec: CurveSpec) -> bool:

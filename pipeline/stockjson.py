@@ -20,7 +20,7 @@ from typing import TypeVar
 from msgspec.structs import replace
 
 from pipeline.decode import ResolveError, suggestion
-from pipeline.stocktables import StockTable, ZoneTable
+from pipeline.stocktables import MOST_SHEETS, StockTable, ZoneTable
 from pipeline.units import UnreadableError, coordinate_of, describe, quantity
 from stages.model.curves import CurveSpec, PlanePoint
 from stages.model.scalars import Angle, Length, Number
@@ -111,8 +111,8 @@ def _bin(blank: StockTable, entry: Entry, unit: str) -> StockTable:
     outer, inner = _shape(entry.get("shape"), f"{where}: shape", unit)
     zones = [_zone(zone, f"{where}: zones[{i}]", unit) for i, zone in enumerate(_listed(entry, "zones", where))]
     cost, count = entry.get("cost"), entry.get("stock", 1)
-    if not isinstance(count, int) or count < 1:
-        raise ResolveError("file", f"{where}: stock is {describe(count)}", "a whole number of at least 1")
+    if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_SHEETS:
+        raise ResolveError("file", f"{where}: stock is {describe(count)}", f"a whole number from 1 to {MOST_SHEETS}")
     return replace(
         blank,
         outline=outer,

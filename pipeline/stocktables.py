@@ -21,6 +21,8 @@ Name = Annotated[str, Meta(min_length=1, max_length=80)]
 LayerName = Annotated[str, Meta(min_length=1, max_length=255)]
 LayerNames = Annotated[tuple[LayerName, ...], Meta(max_length=MOST_ROWS)]
 DEFAULTS = NestOptions()
+MOST_SHEETS = 100_000
+"""Of one kind: as many as there may be copies."""
 BEST_ZONE, WORST_ZONE = 50, 56
 """Layers of quality zones in leather CAD; that the first is the best is our reading, no standard fixes it."""
 
@@ -95,7 +97,7 @@ class StockTable(Table, frozen=True, kw_only=True):
     file: Annotated[str, Meta(max_length=500)] | None = None
     layers: LayersTable | None = None
     entry: Annotated[str, Meta(max_length=255)] | int | None = None
-    quantity: Annotated[int, Meta(ge=1, le=100_000)] | None = None
+    quantity: Annotated[int, Meta(ge=1, le=MOST_SHEETS)] | None = None
     edge_gap: Length = field(default_factory=Length)
     price: Number | None = None
     grain: Angle | None = None

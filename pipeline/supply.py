@@ -15,6 +15,7 @@ from pipeline.dxftables import DxfTable, machine_of
 from pipeline.helps import help_troubles, helps_of
 from pipeline.jobfile import Given, ReportTable, read_as
 from pipeline.jobrules import repeated
+from pipeline.materials import are_same
 from pipeline.processes import limits
 from pipeline.processtables import ProcessTable
 from pipeline.rates import Rates, rates_of
@@ -57,8 +58,7 @@ class Row:
 
     def serves(self, material: str, thickness_mm: float | None) -> bool:
         """Return whether parts of a material and a thickness may be cut from it."""
-        alike = not self.material or self.material.casefold() == material.casefold()
-        return alike and self.thickness_mm in (None, thickness_mm)
+        return (not self.material or are_same(self.material, material)) and self.thickness_mm in (None, thickness_mm)
 
 
 @dataclass(frozen=True, slots=True)

@@ -123,6 +123,8 @@ def _parts(text: str, hint: str) -> tuple[Fraction, str]:
     found = _NUMBER.fullmatch(text.strip()) if len(text) <= LONGEST_TEXT else None
     if found is None:
         raise UnreadableError(f"{describe(text)} is not a number with a unit", hint)
+    if found["unit"].startswith(","):
+        raise UnreadableError(f"{describe(text)} has a comma in its number", f"decimals come after a point; {hint}")
     if found["decimal"]:
         size = _fraction(found["decimal"], hint)
     elif int(found["bottom"]) == 0:

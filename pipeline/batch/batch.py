@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from pipeline.batch import journal as journals
 from pipeline.batch import publish
+from pipeline.batch.asked import Asked
 from pipeline.batch.entries import JOURNAL, Entries
 from pipeline.batch.identity import Program
 from pipeline.batch.journal import Journal
@@ -24,14 +25,17 @@ if TYPE_CHECKING:
     from pipeline.batch.executor import Executor
 
 
+NO_ONE = Asked()
+
+
 @dataclass(frozen=True, slots=True)
 class Order:
-    """What a run is asked for: where to, under which limits, with which folders allowed, by which command."""
+    """What is asked of a run: where to, under which limits, with which folders allowed, with which command."""
 
     out: Path
     limits: Limits
     allow: tuple[str, ...] = ()
-    command: str = ""
+    asked: Asked = NO_ONE
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +59,7 @@ def ready(order: Order, by: Program) -> Iterator[Ready]:
         open_.callback(journal.base.close)
         publish.settle(tree, journal)
         outdate(journal, by, order.allow, order.limits, tree.out)
-        journal.begin(by, order.allow, order.limits, order.command)
+        journal.begin(by, order.allow, order.limits, order.asked)
         yield Ready(order, tree, journal)
 
 

@@ -4,7 +4,6 @@ Exit codes: 0 all made; 3 some were not; 2 wrong usage; 75 not at its end, and n
 """
 
 import os
-import shlex
 import signal
 import sys
 from collections.abc import Iterator
@@ -15,6 +14,9 @@ from platform import system
 from typing import TYPE_CHECKING
 
 import click
+
+from pipeline.batch.asked import asked
+from pipeline.plaintext import plain, plain_lines
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -90,7 +92,7 @@ def batch(
     jobs = entries(paths, tell) if table is None else rows(table_of(table, paths[0]))
     limits = Limits(timeout or TIMEOUT_S, (memory or MEMORY_MB) * MEGABYTE)
     allowed = tuple(sorted(str(folder.resolve()) for folder in allow))
-    order = Order(out, limits, allowed, _command())
+    order = Order(out, limits, allowed, asked(click.get_current_context()))
     _run(order, jobs, Means(workers, cluster, as_json, quiet))
 
 
@@ -112,28 +114,31 @@ def retry(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Run the jobs of a batch again that were not made."""
+    """Run the jobs of a batch again that were not made, and those that still wait."""
     from pipeline.batch.batch import Order
     from pipeline.batch.told import last_run
     from pipeline.batch.work import Limits
 
     before, allow = last_run(out)
     limits = Limits(timeout or before.wall_s, memory * MEGABYTE if memory else before.memory_bytes)
-    _run(Order(out, limits, allow, _command()), None, Means(workers, cluster, as_json, quiet))
+    _run(Order(out, limits, allow, asked(click.get_current_context())), None, Means(workers, cluster, as_json, quiet))
 
 
 @click.command()
 @Out
 @AsJson
 def status(out: Path, as_json: bool) -> None:
-    """Say how far a batch is."""
+    """Say how far a batch is, and how to go on with one that was stopped."""
     import json
 
     from pipeline.batch.journal import reading
-    from pipeline.batch.told import LISTED, LISTED_IN_DOCUMENT, tally
+    from pipeline.batch.told import LISTED, LISTED_IN_DOCUMENT, onward, onward_lines, tally
 
-    found = tally(reading(out), LISTED_IN_DOCUMENT if as_json else LISTED)
-    click.echo(json.dumps(found.document(), indent=1) if as_json else "\n".join(found.lines()))
+    base = reading(out)
+    if as_json:
+        click.echo(json.dumps(tally(base, LISTED_IN_DOCUMENT).document() | onward(base, out), indent=1))
+    else:
+        show(*tally(base, LISTED).lines(), *onward_lines(base, out))
 
 
 @click.command()
@@ -144,17 +149,22 @@ def explain(out: Path, job: str) -> None:
     from pipeline.batch.journal import reading
     from pipeline.batch.told import explain as told
 
-    click.echo("\n".join(told(reading(out), job, out)))
+    show(*told(reading(out), job, out))
+
+
+def show(*lines: str) -> None:
+    """Write to stdout, for people, what may hold names of files and their contents."""
+    click.echo("\n".join(map(plain, lines)))
+
+
+def say(text: str) -> None:
+    """Write lines to stderr."""
+    click.echo(plain_lines(text), err=True)
 
 
 def note(text: str) -> None:
     """Say what was assumed."""
-    click.echo(f"note: {text}", err=True)
-
-
-def _command() -> str:
-    """Return the command as it was given."""
-    return f"planish {shlex.join(sys.argv[1:])}"
+    say(f"note: {text}")
 
 
 def _run(order: "Order", jobs: "Entries | None", means: Means) -> None:
@@ -181,16 +191,16 @@ def _run(order: "Order", jobs: "Entries | None", means: Means) -> None:
             counts = tally_of_run(at.journal.base, at.journal.run)
     except StoppedError as error:
         progress.clear()
-        click.echo(f"stopped: {error}\ngo on with: {order.command}", err=True)
+        say(f"stopped: {error}\ngo on with: {order.asked.line()}")
         sys.exit(EXIT_RESUMABLE)
     progress.clear()
     progress.end(counts)
     if counts.waiting or loop.left is None:
-        click.echo(f"go on with: {order.command}", err=True)
+        say(f"go on with: {order.asked.line()}")
         sys.exit(EXIT_RESUMABLE)
     said = _summarised(order.out, counts.jobs) if loop.drafts else ""
     if said and not means.quiet:
-        click.echo(said, err=True)
+        say(said)
     sys.exit(0 if counts.all_made else EXIT_SOME_FAILED)
 
 

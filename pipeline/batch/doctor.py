@@ -5,6 +5,7 @@ folder that it makes beside the outputs and removes again.  What is not as it sh
 """
 
 import os
+import re
 import shutil
 import sqlite3
 import sys
@@ -96,9 +97,19 @@ def file_system(folder: Path) -> str:
         mounts = [line.split() for line in Path("/proc/mounts").read_text("utf-8", "replace").splitlines()]
     except OSError:
         return "an unknown file system"
-    here = str(folder.resolve())
-    over = [(len(where), sort) for _, where, sort, *_ in mounts if f"{here}/".startswith(where.rstrip("/") + "/")]
-    return max(over, default=(0, "an unknown file system"))[1]
+    here = f"{folder.resolve()}/"
+    points = [(ESCAPED.sub(lambda found: chr(int(found[1], 8)), where), sort) for _, where, sort, *_ in mounts]
+    over = [(len(where), number, sort) for number, (where, sort) in enumerate(points) if _lies(here, where)]
+    return max(over, default=(0, 0, "an unknown file system"))[-1]
+
+
+ESCAPED = re.compile(r"\\([0-7]{3})")
+"""How the list of mounts writes a blank and what else would break its lines, proc_pid_mounts(5)."""
+
+
+def _lies(folder: str, place: str) -> bool:
+    """Return whether a folder, with a slash at its end, lies below a place where something is mounted."""
+    return folder.startswith(f"{place.rstrip('/')}/")
 
 
 def moving(folder: Path) -> Found:

@@ -1,10 +1,12 @@
 """A family of jobs: one job file as a template, and a table of values whose every row makes a job of it.
 
 The first row of the table holds paths as `--set` takes them (`part[0].surface.k0`), and `id` over the column that
-names the jobs, if there is one.  An empty cell leaves the template as it is.  The table is CSV in UTF-8 with commas,
-cells in quotes where they hold commas, quotes or ends of lines.  Rows stream: a table may have millions.
+names the jobs, if there is one.  An empty cell leaves the template as it is.  The table is CSV in UTF-8, with a mark
+of that at its begin or without; between its cells are commas, semicolons or tabs, whichever make paths of the first
+row; cells stand in quotes where they hold these, quotes or ends of lines.  Rows stream: a table may have millions.
 """
 
+import codecs
 import csv
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -22,20 +24,28 @@ ID = "id"
 MOST_COLUMNS = 1000
 MOST_LINES = 1000
 """Of one row; a quote that is not closed ends its row here."""
+BETWEEN = ",;\t"
+"""What may stand between cells: spreadsheets write semicolons where the comma is in numbers."""
+AROUND = b" \r\n"
+"""What is no part of a row at its ends; a tab may be the end of an empty cell."""
+WIDE = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+AS_UTF8 = "save it as CSV in UTF-8"
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
     """A table of values and the template that they are put into.
 
-    columns: the first row.  head: bytes of the first row; own: those of the template.
+    columns: the first row.  between: what stands between cells.  own: bytes of the template.  shared: the digests of
+    what all rows share, the template and the first row.
     """
 
     file: Path
     template: Path
     columns: tuple[str, ...]
+    between: str
     own: bytes
-    head: bytes
+    shared: bytes
 
     @property
     def source(self) -> Source:
@@ -53,13 +63,26 @@ def table_of(file: Path, template: Path) -> Table:
     with file.open("rb") as stream:
         head, _ = next(_records(stream), (b"", 0))
     try:
-        columns = tuple(cell.strip() for cell in _cells(head.decode("utf-8-sig")))
-    except (UnicodeDecodeError, csv.Error) as error:
+        between, columns = _parted(head)
+    except ValueError as error:
         raise BadInputError(Problem(f"the first row cannot be read: {error}", file=str(file), line=1)) from None
     problems = [Problem(message, hint=hint, file=str(file), line=1) for message, hint in _head_troubles(columns)]
     if problems:
         raise BadInputError(*problems)
-    return Table(file, template, columns, read_some(template) or b"", head)
+    own = read_some(template) or b""
+    return Table(file, template, columns, between, own, content(own) + content(head))
+
+
+def _parted(head: bytes) -> tuple[str, tuple[str, ...]]:
+    """Return what stands between the cells of a first row, and these; `ValueError` saying why it is none."""
+    if head.startswith(WIDE):
+        raise ValueError(f"it is UTF-16 text; {AS_UTF8}")
+    try:
+        text = head.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError(f"it is not UTF-8 text; {AS_UTF8}") from None
+    ways = [(between, tuple(cell.strip() for cell in _cells(text, between))) for between in BETWEEN]
+    return max(ways, key=lambda way: (not any(_head_troubles(way[1])), len(way[1])))
 
 
 def _head_troubles(columns: Sequence[str]) -> Iterator[tuple[str, str]]:
@@ -83,17 +106,17 @@ def rows(table: Table) -> Entries:
     with table.file.open("rb") as stream:
         offset = 0
         for number, (record, size) in enumerate(_records(stream)):
-            own = record.strip()
+            own = record.strip(AROUND)
             if number and own:
-                start = offset + len(record) - len(record.lstrip())
-                name = (names is not None and _id(own, names)) or f"{stem}-{number:0{DIGITS}}"
+                start = offset + len(record) - len(record.lstrip(AROUND))
+                name = (names is not None and _id(own, names, table.between)) or f"{stem}-{number:0{DIGITS}}"
                 yield source, Entry(name, start, len(own), number, content_of(table, own))
             offset += size
 
 
 def content_of(table: Table, own: bytes) -> bytes:
     """Return the digest of a row's job: of its template, of the paths of the table, and of the row."""
-    return content(table.own, table.head, own)
+    return content(table.shared + content(own))
 
 
 def _records(stream: BinaryIO) -> Iterator[tuple[bytes, int]]:
@@ -111,27 +134,30 @@ def _records(stream: BinaryIO) -> Iterator[tuple[bytes, int]]:
         yield b"".join(whole), length
 
 
-def _id(own: bytes, column: int) -> str | None:
+def _id(own: bytes, column: int, between: str) -> str | None:
     """Return the id that a row gives itself; None where it gives none."""
     try:
-        cell = _cells(own.decode())[column].strip()
-    except (UnicodeDecodeError, csv.Error, IndexError):
+        cell = _cells(own.decode(), between)[column].strip()
+    except (ValueError, IndexError):
         return None
     return job_id(cell) if cell and safe_name(cell) else None
 
 
-def _cells(text: str) -> list[str]:
-    """Return the cells of one row."""
-    return next(csv.reader([text], strict=True), [])
+def _cells(text: str, between: str) -> list[str]:
+    """Return the cells of one row; `ValueError` where quotes or letters are out of place."""
+    try:
+        return next(csv.reader([text], delimiter=between, strict=True), [])
+    except csv.Error as error:
+        raise ValueError(str(error)) from None
 
 
-def settings(columns: Sequence[str], own: bytes) -> tuple[str, ...]:
+def settings(columns: Sequence[str], own: bytes, between: str = ",") -> tuple[str, ...]:
     """Return what a row sets, as `--set` takes it; `ValueError` saying why nothing can be made of it."""
     try:
-        cells = _cells(own.decode())
+        cells = _cells(own.decode(), between)
     except UnicodeDecodeError:
-        raise ValueError("the row is not UTF-8 text") from None
-    except csv.Error as error:
+        raise ValueError(f"the row is not UTF-8 text; {AS_UTF8}") from None
+    except ValueError as error:
         raise ValueError(f"the row cannot be read: {error}") from None
     if len(cells) != len(columns):
         raise ValueError(f"{len(cells)} cells where the table has {len(columns)} columns")

@@ -16,7 +16,7 @@ from time import perf_counter
 
 from pipeline.batch import draft
 from pipeline.batch.named import Named
-from pipeline.batch.work import Record, Status, Work
+from pipeline.batch.work import Record, Status, Work, one_line
 from pipeline.complaints import complaints
 from pipeline.job import job_of
 from pipeline.jobfile import Given, ReadJob, read
@@ -25,8 +25,6 @@ from pipeline.run import JobResult, run_job
 from stages.errors import BadInputError
 
 ERRORS, TRACEBACK = "errors.json", "traceback.txt"
-LONGEST_CAUSE = 500
-"""Characters: a cause is one line of a listing; all of it lies in the folder of the job."""
 
 Files = Mapping[str, bytes]
 NO_FILES: Files = {}
@@ -81,12 +79,6 @@ def _moved(name: str) -> Record:
 
 def _record(status: Status, said: str) -> Record:
     return Record(status, one_line(said), 0.0, (), "", own=True)
-
-
-def one_line(text: str) -> str:
-    """Return a text as one line that is not too long."""
-    line = " ".join(text.split())
-    return line if len(line) <= LONGEST_CAUSE else f"{line[: LONGEST_CAUSE - 3]}..."
 
 
 def _said(error: BaseException) -> str:

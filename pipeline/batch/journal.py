@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeline.batch import schema
+from pipeline.batch.asked import Asked
 from pipeline.batch.entries import JOURNAL, Entry, Source
 from pipeline.batch.identity import Program
 from pipeline.batch.schema import PUBLISHING, STATE_OF, WAITING
@@ -26,7 +27,8 @@ BESIDE = ("-wal", "-shm")
 CACHE_KB = 16_384
 BUSY_MS = 10_000
 """How long a reader may keep a checkpoint waiting."""
-
+NAMES = "surrogateescape"
+"""How names of files that are no UTF-8 are told as text: in the journal they are the bytes that they are."""
 
 RETRIED = "planish retry asked for it"
 
@@ -66,13 +68,14 @@ class Journal:
     taken: dict[str, int] = field(default_factory=dict)
     sources: dict[Source, int] = field(default_factory=dict)
 
-    def begin(self, by: Program, allow: Sequence[str], limits: Limits, command: str) -> None:
+    def begin(self, by: Program, allow: Sequence[str], limits: Limits, asked: Asked) -> None:
         """Begin a run: the jobs that are taken in from now on are of this one."""
         with self.writing():
             self.base.execute("INSERT OR IGNORE INTO program(code, tables, libraries) VALUES(?, ?, ?)", _row(by))
             same = "SELECT id FROM program WHERE code = ? AND tables = ? AND libraries = ?"
             found = self.base.execute(same, _row(by)).fetchone()
-            row = (found[0], "\n".join(allow), limits.wall_s, limits.memory_bytes, command)
+            bounds = as_held("\n".join(allow)), limits.wall_s, limits.memory_bytes
+            row = (found[0], *bounds, as_held(asked.command), as_held(asked.folder))
             self.run = self.base.execute(schema.BEGIN, row).lastrowid or 0
 
     def accept(self, chunk: Sequence[tuple[Source, Entry]]) -> None:
@@ -84,7 +87,11 @@ class Journal:
                 self.base.execute("ROLLBACK TO chunk")
                 for row in rows:
                     self._accept_one(row)
-            self.base.execute("UPDATE run SET accepted = accepted + ? WHERE id = ?", (len(rows), self.run))
+
+    def all_taken_in(self) -> None:
+        """Write down that no job of this run is missing from the journal."""
+        with self.writing():
+            self.base.execute("UPDATE run SET whole = 1 WHERE id = ? AND whole = 0", (self.run,))
 
     def _accept_one(self, row: tuple[object, ...]) -> None:
         """Take a job in; where another one of this run has its id, with a number behind it."""
@@ -99,10 +106,9 @@ class Journal:
     def _source(self, source: Source) -> int:
         """Return the number of a source; one file of many jobs is looked up once."""
         if source not in self.sources:
-            row = (source.kind, source.path, source.template)
-            self.base.execute("INSERT OR IGNORE INTO source(kind, path, template) VALUES(?, ?, ?)", row)
-            found = self.base.execute("SELECT id FROM source WHERE kind = ? AND path = ? AND template = ?", row)
-            self.sources = {source: found.fetchone()[0]}
+            row = source.kind, as_held(source.path), as_held(source.template)
+            self.base.execute(schema.SOURCE, row)
+            self.sources = {source: self.base.execute(schema.SOURCE_ID, row).fetchone()[0]}
         return self.sources[source]
 
     def pending(self, after: int, count: int) -> list[Place]:
@@ -119,19 +125,19 @@ class Journal:
             self.base.execute("UPDATE job SET attempts = attempts + 1 WHERE id = ?", (place.row,))
 
     def retry(self) -> None:
-        """Have all jobs wait that were not made."""
-        again = "UPDATE job SET state = ?, attempts = 0, why = ?, seen = ? WHERE state > ?"
+        """Have all jobs wait that were not made, those that an earlier run left waiting among them."""
         with self.writing():
-            self.base.execute(again, (WAITING, RETRIED, self.run, STATE_OF["made"]))
+            self.base.execute("UPDATE run SET whole = NULL WHERE id = ?", (self.run,))
+            self.base.execute(schema.RETRY, (self.run, RETRIED))
 
     def intend(self, group: Sequence[Finished]) -> None:
         """Write down, durably, what became of some jobs and which drafts are to take their places."""
         with self.writing(durable=True):
             self.base.executemany(schema.INTEND, [self._ending(each) for each in group])
             self.base.executemany("DELETE FROM input WHERE job = ?", [(each.place.row,) for each in group])
-            named = [(each.place.row, *file) for each in group for file in each.record.inputs]
-            self.base.executemany("INSERT OR IGNORE INTO file(path, sha256) VALUES(?, ?)", [row[1:] for row in named])
-            self.base.executemany(schema.NAMES, named)
+            files = [(each.place.row, as_held(path), digest) for each in group for path, digest in each.record.inputs]
+            self.base.executemany(schema.FILE, [row[1:] for row in files])
+            self.base.executemany(schema.NAMES, files)
 
     def _ending(self, each: Finished) -> tuple[object, ...]:
         record = each.record
@@ -159,10 +165,6 @@ class Journal:
         found = self.base.execute("SELECT count(*) FROM job WHERE state = ? AND seen = ?", (WAITING, self.run))
         return int(found.fetchone()[0])
 
-    def counts(self) -> dict[int, int]:
-        """Return how many jobs are in each state."""
-        return dict(self.base.execute("SELECT state, count(*) FROM job GROUP BY state").fetchall())
-
     @contextmanager
     def writing(self, *, durable: bool = False) -> Iterator[None]:
         """Commit what the block writes, all or nothing; durable: on disk when the block ends."""
@@ -181,6 +183,11 @@ def _row(by: Program) -> tuple[str, str, str]:
     return by.code, by.tables, by.libraries
 
 
+def as_held(text: str) -> bytes:
+    """Return a name of a file as the journal holds it."""
+    return text.encode("utf-8", NAMES)
+
+
 def opened(out: Path) -> Journal:
     """Return the journal of an output folder for its runner, made if there is none."""
     base = _connected(f"{(out / JOURNAL).absolute().as_uri()}?mode=rwc", out)
@@ -193,23 +200,28 @@ def opened(out: Path) -> Journal:
 
 
 def _prepare(base: sqlite3.Connection, out: Path) -> None:
-    """Make the tables of a new journal; `BadInputError` where there are those of another version."""
-    version = base.execute("PRAGMA user_version").fetchone()[0]
-    if version not in (0, schema.VERSION):
-        hint = "go on with the version that began it, or choose another folder with -o"
-        raise BadInputError(Problem(f"the journal has tables of version {version}", hint=hint, file=str(out / JOURNAL)))
+    """Make the tables of a new journal, and bring those of an earlier version up to this one."""
+    version = version_of(base)
     base.execute("PRAGMA journal_mode = WAL")
     base.execute(f"PRAGMA cache_size = -{CACHE_KB}")
-    if version == 0:
-        base.executescript(f"BEGIN; {schema.TABLES} COMMIT;")
+    if version < schema.VERSION:
+        base.executescript(f"BEGIN; {schema.TABLES if version == 0 else schema.UPGRADE} COMMIT;")
 
 
 def reading(out: Path) -> sqlite3.Connection:
-    """Return the journal of an output folder for reading; `BadInputError` where there is none."""
-    if not (out / JOURNAL).is_file():
+    """Return the journal of an output folder for reading; `BadInputError` where there is none, or nothing in it."""
+    base = None
+    if (out / JOURNAL).is_file():
+        base = _connected(f"{(out / JOURNAL).absolute().as_uri()}?mode=ro", out)
+    if base is None or version_of(base) == 0:
         hint = "give the folder that planish batch wrote into"
         raise BadInputError(Problem("no batch has run here: there is no journal", hint=hint, file=str(out)))
-    return _connected(f"{(out / JOURNAL).absolute().as_uri()}?mode=ro", out)
+    return base
+
+
+def version_of(base: sqlite3.Connection) -> int:
+    """Return the version of the tables of a journal; 0 where it has none yet."""
+    return int(base.execute("PRAGMA user_version").fetchone()[0])
 
 
 def _connected(uri: str, out: Path) -> sqlite3.Connection:
@@ -218,8 +230,17 @@ def _connected(uri: str, out: Path) -> sqlite3.Connection:
             raise BadInputError(Problem("the journal is a link", hint="remove it", file=str(file)))
     try:
         base = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=BUSY_MS / 1000)
-        base.execute("PRAGMA user_version")
+        version = version_of(base)
     except sqlite3.Error as error:
         hint = "planish doctor tells whether this file system can hold a journal"
         raise BadInputError(Problem(f"the journal: {error}", hint=hint, file=str(out / JOURNAL))) from None
+    if version > schema.VERSION:
+        base.close()
+        hint = "go on with the version that began it, or choose another folder with -o"
+        raise BadInputError(Problem(f"the journal has tables of version {version}", hint=hint, file=str(out / JOURNAL)))
+    base.text_factory = _text
     return base
+
+
+def _text(stored: bytes) -> str:
+    return stored.decode("utf-8", NAMES)

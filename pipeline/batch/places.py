@@ -69,7 +69,7 @@ class Places:
         if families.content_of(table, own) != place.content:
             raise ChangedError(source.path)
         try:
-            settings = families.settings(table.columns, own)
+            settings = families.settings(table.columns, own, table.between)
         except ValueError as error:
             raise UnfitError(f"{source.path}: row {place.line}: {error}", place) from None
         return self._work(place, draft, table.own, settings=settings)
@@ -109,6 +109,6 @@ def settings_at(source: Source, offset: int, length: int) -> tuple[str, ...]:
         table = families.table_of(Path(source.path), Path(source.template))
         with table.file.open("rb") as stream:
             stream.seek(offset)
-            return families.settings(table.columns, stream.read(length))
+            return families.settings(table.columns, stream.read(length), table.between)
     except (OSError, ValueError, BadInputError):
         return ()

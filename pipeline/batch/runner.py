@@ -26,7 +26,7 @@ from pipeline.batch.publish import Tree
 from pipeline.batch.schema import CONDEMNED, STATE_OF
 from pipeline.batch.stale import is_folder
 from pipeline.batch.stopped import SPACE, StoppedError, says_full
-from pipeline.batch.work import Record
+from pipeline.batch.work import Record, one_line
 
 if TYPE_CHECKING:
     from pipeline.batch.executor import Executor
@@ -126,6 +126,7 @@ class Loop:
         """Take the next jobs in; once there are no more, count what waits."""
         chunk = next(chunks, None)
         if chunk is None:
+            self.journal.all_taken_in()
             self.left = self.journal.waiting() - len(self.group)
         else:
             self.journal.accept(chunk)
@@ -147,7 +148,7 @@ class Loop:
             try:
                 place, work = self.places.work(place, self.tree.draft(draft))
             except UnfitError as error:
-                self._end(error.place, Record("bad-input", str(error), 0.0, (), "", own=True), draft)
+                self._end(error.place, Record("bad-input", one_line(str(error)), 0.0, (), "", own=True), draft)
                 continue
             future = self.executor.submit(work)
             self.flying[draft] = place, future
@@ -179,6 +180,7 @@ class Loop:
             record = Record("internal", f"{type(error).__name__}: {error}", 0.0, (), "", own=False)
         if record.digest and not is_folder(draft, self.tree.drafts):
             record = replace(record, own=False, cause=NO_DRAFT)
+        record = replace(record, cause=one_line(record.cause))
         if not record.own:
             self._stray(place, record, draft)
             return

@@ -9,8 +9,8 @@ from typing import Final, get_args
 
 from pipeline.batch.work import Status
 
-VERSION = 1
-"""Of these tables; a journal of another version is not touched."""
+VERSION = 2
+"""Of these tables; a journal of a later version is not touched."""
 
 WAITING, PUBLISHING = 0, 1
 STATUSES: Final[tuple[Status, ...]] = get_args(Status)
@@ -24,7 +24,7 @@ TABLES = f"""
 PRAGMA user_version = {VERSION};
 CREATE TABLE program(id INTEGER PRIMARY KEY, code TEXT, tables TEXT, libraries TEXT, UNIQUE(code, tables, libraries));
 CREATE TABLE run(id INTEGER PRIMARY KEY, program INTEGER, allow TEXT, wall_s REAL, memory_bytes INTEGER,
-                 command TEXT, accepted INTEGER NOT NULL DEFAULT 0);
+                 command TEXT, folder TEXT, whole INTEGER);
 CREATE TABLE source(id INTEGER PRIMARY KEY, kind TEXT, path TEXT, template TEXT, UNIQUE(kind, path, template));
 CREATE TABLE job(id INTEGER PRIMARY KEY, name TEXT NOT NULL COLLATE NOCASE UNIQUE, source INTEGER, offset INTEGER,
                  length INTEGER, line INTEGER, content BLOB, seen INTEGER, state INTEGER NOT NULL, attempts INTEGER,
@@ -35,7 +35,39 @@ CREATE TABLE input(job INTEGER, file INTEGER, PRIMARY KEY(job, file)) WITHOUT RO
 CREATE INDEX input_file ON input(file);
 """
 
-BEGIN = "INSERT INTO run(program, allow, wall_s, memory_bytes, command) VALUES(?, ?, ?, ?, ?)"
+UPGRADE = f"""
+PRAGMA user_version = {VERSION};
+ALTER TABLE run ADD COLUMN folder TEXT;
+ALTER TABLE run ADD COLUMN whole INTEGER;
+"""
+"""From version 1, which did not write down where a command was given, nor whether all of its jobs were taken in."""
+
+BEGIN = """
+INSERT INTO run(program, allow, wall_s, memory_bytes, command, folder, whole)
+VALUES(?, CAST(? AS TEXT), ?, ?, CAST(? AS TEXT), CAST(? AS TEXT), 0)
+"""
+"""whole: 1 once all jobs that the command names are taken in, NULL for a run that takes none in."""
+
+SOURCE = "INSERT OR IGNORE INTO source(kind, path, template) VALUES(?, CAST(? AS TEXT), CAST(? AS TEXT))"
+SOURCE_ID = "SELECT id FROM source WHERE kind = ? AND path = CAST(? AS TEXT) AND template = CAST(? AS TEXT)"
+
+RETRY = f"""
+UPDATE job SET state = {WAITING}, attempts = 0, seen = ?, why = CASE WHEN run IS NULL THEN why ELSE ? END
+WHERE state <> {STATE_OF["made"]} AND (run IS NULL OR ends > {STATE_OF["made"]})
+"""
+"""A job that was made and is out of date is left to the batch that it is of."""
+
+UNFINISHED = f"""
+SELECT command, folder FROM run WHERE id IN (
+    SELECT * FROM (SELECT seen FROM job WHERE state = {WAITING} ORDER BY id LIMIT 1)
+    UNION SELECT * FROM (SELECT seen FROM job WHERE state = {WAITING} ORDER BY id DESC LIMIT 1)
+    UNION SELECT * FROM (SELECT seen FROM job WHERE state = {PUBLISHING} LIMIT 1)
+) OR (whole = 0 AND id = (SELECT max(id) FROM run WHERE whole IS NOT NULL))
+GROUP BY command, folder ORDER BY max(id)
+"""
+"""What was asked for and did not come to its end: the first or the last job that waits is of it, or it is the last
+one that takes jobs in and did not take in all of them.  No more are looked at, so that a million are told of at once.
+"""
 
 ACCEPT = f"""
 INSERT INTO job(name, source, offset, length, line, content, seen, state, attempts)
@@ -64,4 +96,5 @@ SETTLE = f"UPDATE job SET state = ends, draft = NULL WHERE state = {PUBLISHING}"
 
 AGAIN = f"UPDATE job SET state = {WAITING}, attempts = 0, why = ? WHERE id = ? AND state > {PUBLISHING}"
 
-NAMES = "INSERT OR IGNORE INTO input(job, file) SELECT ?, id FROM file WHERE path = ? AND sha256 = ?"
+FILE = "INSERT OR IGNORE INTO file(path, sha256) VALUES(CAST(? AS TEXT), ?)"
+NAMES = "INSERT OR IGNORE INTO input(job, file) SELECT ?, id FROM file WHERE path = CAST(? AS TEXT) AND sha256 = ?"

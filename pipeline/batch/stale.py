@@ -11,8 +11,8 @@ from collections.abc import Iterator, Sequence
 
 from pipeline.batch import schema
 from pipeline.batch.identity import Program, of_file
-from pipeline.batch.journal import Journal
-from pipeline.batch.schema import PUBLISHING, STATE_OF
+from pipeline.batch.journal import Journal, as_held
+from pipeline.batch.schema import PUBLISHING, STATE_OF, WAITING
 from pipeline.batch.work import Limits
 
 CHUNK = 10_000
@@ -43,8 +43,8 @@ def _circumstances(journal: Journal, allow: Sequence[str], limits: Limits) -> No
     """Outdate failures whose cause may be a folder that was not allowed, or a limit that is higher now."""
     bad, timed, memory = STATE_OF["bad-input"], STATE_OF["timed-out"], STATE_OF["out-of-memory"]
     of_run = "run IN (SELECT id FROM run WHERE {})"
-    allowed = f"state = {bad} AND {of_run.format('allow <> ?')}"
-    _wait(journal, "other folders are allowed", allowed, ("\n".join(allow),))
+    allowed = f"state = {bad} AND {of_run.format('allow <> CAST(? AS TEXT)')}"
+    _wait(journal, "other folders are allowed", allowed, (as_held("\n".join(allow)),))
     _wait(journal, "it may take longer", f"state = {timed} AND {of_run.format('wall_s < ?')}", (limits.wall_s,))
     more = f"state = {memory} AND {of_run.format('memory_bytes < ?')}"
     _wait(journal, "it may take more memory", more, (limits.memory_bytes,))
@@ -92,4 +92,5 @@ def is_folder(name: str, inside: int) -> bool:
 
 def _wait(journal: Journal, why: str, where: str, values: tuple[object, ...]) -> None:
     with journal.writing():
-        journal.base.execute(f"UPDATE job SET state = 0, attempts = 0, why = ? WHERE {where}", (why, *values))
+        again = f"UPDATE job SET state = {WAITING}, attempts = 0, why = CAST(? AS TEXT) WHERE {where}"
+        journal.base.execute(again, (as_held(why), *values))

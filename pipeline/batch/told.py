@@ -5,11 +5,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pipeline.batch import identity
+from pipeline.batch import identity, schema
+from pipeline.batch.asked import Asked
 from pipeline.batch.entries import Source
 from pipeline.batch.failures import place_of, reproduce
 from pipeline.batch.identity import Program
-from pipeline.batch.journal import reading
+from pipeline.batch.journal import as_held, reading, version_of
+from pipeline.batch.lock import holder
 from pipeline.batch.places import settings_at
 from pipeline.batch.schema import CONDEMNED, PUBLISHING, STATE_OF, STATUS_OF, STATUSES, WAITING
 from pipeline.batch.work import Limits
@@ -74,6 +76,25 @@ def _tally(found: Iterable[tuple[int, int]], failed: Iterable[tuple[str, int, st
     return Tally(sum(counts.values()), waiting, ended, named)
 
 
+def unfinished(base: sqlite3.Connection) -> list[Asked]:
+    """Return what was asked for and is not at its end; a journal of version 1 does not tell."""
+    if version_of(base) < schema.VERSION:
+        return []
+    return [Asked(command, folder or "") for command, folder in base.execute(schema.UNFINISHED) if command]
+
+
+def onward(base: sqlite3.Connection, out: Path) -> dict[str, object]:
+    """Return who is at work on a batch, and how to go on with what no one is at work on."""
+    who = holder(out)
+    return {"at_work": who, "go_on": [] if who else [asked.line() for asked in unfinished(base)]}
+
+
+def onward_lines(base: sqlite3.Connection, out: Path) -> list[str]:
+    """Return the same for people."""
+    who = holder(out)
+    return [f"at work: {who}"] if who else [f"go on with: {asked.line()}" for asked in unfinished(base)]
+
+
 def last_run(out: Path) -> tuple[Limits, tuple[str, ...]]:
     """Return the limits of the last run, and the folders that it allowed."""
     row = reading(out).execute("SELECT wall_s, memory_bytes, allow FROM run ORDER BY id DESC LIMIT 1").fetchone()
@@ -91,14 +112,14 @@ JOB = """
 SELECT job.id AS id, name, kind, path, template, offset, length, line, content, state, attempts, why, cause, seconds,
        job.run AS run, command, allow, wall_s, memory_bytes, code, tables, libraries
 FROM job JOIN source ON source.id = job.source LEFT JOIN run ON run.id = job.run
-LEFT JOIN program ON program.id = run.program WHERE name = ?
+LEFT JOIN program ON program.id = run.program WHERE name = CAST(? AS TEXT)
 """
 
 
 def explain(base: sqlite3.Connection, name: str, out: Path) -> list[str]:
     """Return what is known of a job, why it ran, and how to run it alone; `BadInputError` where there is none."""
     base.row_factory = sqlite3.Row
-    row = base.execute(JOB, (name,)).fetchone()
+    row = base.execute(JOB, (as_held(name),)).fetchone()
     if row is None:
         hint = f"the ids are the names of the folders in {out}"
         raise BadInputError(Problem(f'there is no job "{name}"', hint=hint, file=str(out)))

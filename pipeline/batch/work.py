@@ -7,7 +7,13 @@ worker on another.  No surface, no report and no exception is in them; what a jo
 from dataclasses import dataclass
 from typing import Literal
 
+from pipeline.plaintext import plain
+
 Status = Literal["made", "rejected", "no-solution", "bad-input", "internal", "crashed", "timed-out", "out-of-memory"]
+
+
+LONGEST_CAUSE = 500
+"""Characters: a cause is one line of a listing; all of it lies in the folder of the job."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,3 +62,9 @@ class Record:
     inputs: tuple[tuple[str, str], ...]
     digest: str
     own: bool
+
+
+def one_line(text: str) -> str:
+    """Return a text as one line that is not too long, of letters that show: it may hold names of files."""
+    line = plain(" ".join(text.split()))
+    return line if len(line) <= LONGEST_CAUSE else f"{line[: LONGEST_CAUSE - 3]}..."

@@ -76,7 +76,7 @@ def compare(a: Report, b: Report) -> Comparison:
     shared = [key for key in _merged(before, after) if key[0] not in {*added, *removed}]
     said, says = {**dict(_settings(a)), **dict(_texts(one))}, {**dict(_settings(b)), **dict(_texts(two))}
     kept = [key for key in _merged(said, says) if key[0] not in {*added, *removed}]
-    words = [_word(key, said.get(key), says.get(key)) for key in kept if said.get(key) != says.get(key)]
+    words = [_word(key, said, says) for key in kept if said.get(key) != says.get(key)]
     numbers = [change for key in shared for change in _changes(key, before.get(key), after.get(key))]
     return Comparison(added, removed, (*words, *numbers), tuple(_files(one, two)), tuple(sorted(spoilt)))
 
@@ -127,14 +127,15 @@ def _stage(part: str, name: str, stage: StageEntry) -> Iterator[tuple[Key, Said]
         yield (part, name, f"finding {code}"), "; ".join(same)
 
 
-def _word(key: Key, a: Said, b: Said) -> Change:
-    """Return the change of a class, a status, a finding or a setting."""
-    part, stage, metric = key
+def _word(key: Key, said: Mapping[Key, Said], says: Mapping[Key, Said]) -> Change:
+    """Return the change of a class, a status, a finding or a setting, which a run may have and not know (None)."""
+    (part, stage, metric), a, b = key, said.get(key), says.get(key)
     ranks = [{name: rank for rank, name in enumerate(order)} for order in ORDERS if a in order and b in order]
     verdict: Verdict = ""
     if metric in ("class", "status") and ranks:
         verdict = "worse" if ranks[0][str(b)] > ranks[0][str(a)] else "better"
-    return Change(part, stage, metric, a, b, None, "", verdict, "b" if a is None else "a" if b is None else "both")
+    present: Literal["both", "a", "b"] = "b" if key not in said else "a" if key not in says else "both"
+    return Change(part, stage, metric, a, b, None, "", verdict, present)
 
 
 def _changes(key: Key, a: Row | None, b: Row | None) -> Iterator[Change]:

@@ -20,6 +20,7 @@ from pipeline.rates import Rates
 from pipeline.report.cuts import SECONDS_PER_MINUTE, Cuts, cuts_of_copies, cuts_of_sheets, whole
 from pipeline.report.figures import figures
 from pipeline.report.stockfigures import MM_PER_M, cost
+from pipeline.report.traveller_numbers import counted
 
 if TYPE_CHECKING:
     from pipeline.run import JobResult
@@ -161,7 +162,7 @@ def _part(pattern: "FlatPattern", shares: Sequence[Share], helped: Cuts | None) 
     count = len(shares)
     one = figures(pattern, 0.0)
     long, pierces = (one.cut_length_mm, one.pierces) if helped is None else (helped.length_mm, helped.pierces)
-    cuts = Cuts(count * (long or 0.0), round(count * (pierces or 0.0)))
+    cuts = Cuts(_of(count, long), None if pierces is None else round(count * pierces))
     return PartCost(
         pattern.part,
         count,
@@ -174,6 +175,7 @@ def _part(pattern: "FlatPattern", shares: Sequence[Share], helped: Cuts | None) 
 
 
 def _of(share: float, amount: float | None) -> float | None:
+    """Return a share of an amount, or so many times it; None where it is not known."""
     return None if amount is None else share * amount
 
 
@@ -232,15 +234,15 @@ def cost_lines(result: "JobResult") -> list[str]:
 
 def cost_line(made: Costs) -> str:
     """Return the cost in one line for the terminal; what is not known, and how it could be, is said."""
-    count, cuts = len(made.sheets), made.cuts
-    words = [f"{count} sheet{'' if count == 1 else 's'}"]
+    cuts = made.cuts
+    words = [counted(len(made.sheets), "sheet")]
     if made.net is None or made.price is None:
         words.append("price not known (price under [[stock]])")
     else:
         words.append(f"price {made.price:.2f}")
         words += [f"offcuts worth {made.credit:.2f}, net {made.net:.2f}"] if made.credit else []
     if cuts.length_mm is not None and cuts.pierces is not None:
-        words.append(f"cut {cuts.length_mm / MM_PER_M:.3f} m, {cuts.pierces:.0f} pierces")
+        words.append(f"cut {cuts.length_mm / MM_PER_M:.3f} m, {counted(round(cuts.pierces), 'pierce')}")
     seconds = cuts.seconds(made.rates)
     unknown = "time not known (speed and pierce_time under [process])"
     words.append(unknown if seconds is None else f"time {_clock(seconds)}")

@@ -110,10 +110,11 @@ class WriteEntry(StageEntry, frozen=True, kw_only=True):
 
 
 class JobHead(Struct, frozen=True, kw_only=True):
-    """What every reader needs of a job; digest: null where several were nested together."""
+    """What every reader needs of a job; digest: null where several were nested together; formats: of its report."""
 
     name: str
     digest: str | None = None
+    formats: tuple[str, ...] | None = None
 
 
 class ReportEntry(Struct, frozen=True):

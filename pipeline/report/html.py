@@ -4,7 +4,7 @@ The page is a template, a style sheet and scripts of this package, put together 
 which `<` is written as an escape: no text of a job can end it.  A short row for every part makes the table; the rest of
 a part is a JSON text inside that block, read when the part is opened.  The policy in its head forbids any request.
 
-The page holds the numbers of `report.json` and, to draw, those of `view.json`; it computes but margins and positions.
+The page holds the numbers of `report.json` and, to draw, those of `view.json`; it computes but positions and colours.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

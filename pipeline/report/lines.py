@@ -5,6 +5,7 @@ Where something fails, the lines below say where, how much, what is allowed, and
 
 from collections.abc import Collection, Iterator
 
+from pipeline.report.traveller_numbers import counted
 from pipeline.run import JobResult, Step
 from stages.model.report import Metric, StageReport, Where
 
@@ -131,13 +132,13 @@ OPENED = ("report.html", "traveller.pdf", "report.json")
 def outcome_line(result: JobResult, out: str, paths: Collection[str]) -> str:
     """Return the last line: what was made, and what of it to open where.  paths: of all that was written."""
     count = sum(path.endswith(".dxf") for path in paths)
-    *others, last = [f"{count} drawing{'' if count == 1 else 's'}", *(name for name in OPENED if name in paths)]
+    *others, last = [counted(count, "drawing"), *(name for name in OPENED if name in paths)]
     files = f"{', '.join(others)} and {last}" if others else last
     if result.status == "made":
         sheets = len(result.nest.product.layouts) if result.nest.product else 0
-        on = f" on {sheets} sheet{'' if sheets == 1 else 's'}" if sheets else ""
+        on = f" on {counted(sheets, 'sheet')}" if sheets else ""
         copies = sum(run.part.spec.quantity for run in result.parts)
-        return f"made: {copies} piece{'' if copies == 1 else 's'}{on}, {files} in {out}"
+        return f"made: {counted(copies, 'piece')}{on}, {files} in {out}"
     failed = [run.part.name for run in result.parts if run.pattern is None]
     if failed:
         return f"{result.status}: {', '.join(failed)}; nothing nested, {files} in {out}"

@@ -260,8 +260,12 @@ def wrapped(lines: Sequence[str], signs: int, most: int) -> list[str]:
 
 def length_text(mm: float) -> str:
     """Return a length without unit, to a share that can be measured: 3 decimals below 10 mm, 1 above 1 m."""
-    decimals = 3 if mm < 10.0 else 2 if mm < 1000.0 else 1  # noqa: PLR2004
+    decimals = 3 if mm < FINE_MM else 2 if mm < COARSE_MM else 1
     return f"{mm:.{decimals}f}"
+
+
+FINE_MM, COARSE_MM = 10.0, 1000.0
+"""Below the one a thousandth is written, from the other on a tenth: what callipers and tapes show."""
 
 
 def area_text(mm2: float) -> str:

@@ -34,10 +34,28 @@ def sides(pattern: FlatPattern) -> Sides:
 
 
 def flat_pieces(pattern: FlatPattern) -> list[FlatPiece]:
-    """Return the pieces of the flat map in order, from the edge c1 of the outline; none for a plate."""
-    whole = [_whole(edge) for edge in pattern.outer.edges]
-    there = [edge for edge in whole if isinstance(edge, DevelopedEdge) and not edge.reverse]
-    return [edge.piece for i, edge in enumerate(there) if i == 0 or edge.piece is not there[i - 1].piece]
+    """Return the pieces of the flat map in order, from the edges c0 and c1 of the outline; none for a plate."""
+    edges = [edge for edge in map(_whole, pattern.outer.edges) if isinstance(edge, DevelopedEdge)]
+    there = {id(edge.piece): edge.piece for edge in edges if not edge.reverse}
+    back = {id(edge.piece): edge.piece for edge in edges if edge.reverse}
+    found = list((there | back).values())
+    # an allowance leaves edges without a length out, so that a piece with an apex may be on one side only
+    return list(there.values()) if len(there) == len(found) else _chained(found)
+
+
+def _chained(pieces: Sequence[FlatPiece]) -> list[FlatPiece]:
+    """Return pieces so that each begins where the one before ends."""
+    u, whole = np.array([0.0, 1.0]), np.ones(2)
+    first, last = (np.stack([piece.positions(u, v * whole) for piece in pieces]) for v in (0.0, 1.0))
+    apart = norm(last[:, None] - first[None]).sum(axis=2)
+    np.fill_diagonal(apart, np.inf)
+    at = int(np.argmax(apart.min(axis=0)))
+    order = [at]
+    while len(order) < len(pieces):
+        apart[:, at] = np.inf
+        at = int(np.argmin(apart[at]))
+        order.append(at)
+    return [pieces[i] for i in order]
 
 
 def _whole(edge: PlaneCurve) -> PlaneCurve:

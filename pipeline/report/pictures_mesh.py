@@ -8,7 +8,8 @@ import numpy as np
 
 from pipeline.report.pictures_canvas import BLUE, Box, Canvas, caption, fitted, length_text, scale_bar
 from pipeline.report.pictures_net import best_view
-from pipeline.report.pictures_surface import BACK_RGB, FRONT_RGB, LIGHT, MARGINS, SHADE, triad
+from pipeline.report.pictures_surface import MARGINS, SHADE, triad
+from pipeline.report.shades import BACK_RGB, FRONT_RGB, LIGHT
 from stages.geometry.arrays import Array, Points3, cross3, dot, norm, unit
 from stages.model.surface import MeshSurface
 

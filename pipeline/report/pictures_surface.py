@@ -32,13 +32,9 @@ from pipeline.report.pictures_canvas import (
 from pipeline.report.pictures_features import Drawn
 from pipeline.report.pictures_names import write_names
 from pipeline.report.pictures_net import Net, normals
+from pipeline.report.shades import BACK_RGB, FRONT_RGB, LIGHT
 from stages.geometry.arrays import Array, Indices, Points2, Points3, Values, norm, unit
 
-LIGHT = np.array([-0.45, 0.55, 0.70])
-"""Direction of the light in the frame of the picture: from the upper left, behind the viewer."""
-
-FRONT_RGB = np.array([0.78, 0.88, 0.96])
-BACK_RGB = np.array([0.93, 0.87, 0.74])
 SHADE = 0.32
 """How much darker a face is that the light does not meet."""
 

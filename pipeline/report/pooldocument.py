@@ -14,6 +14,7 @@ from pipeline.provenance import code_digest, environment
 from pipeline.report.costs import cost_lines
 from pipeline.report.document import Document, encoded, figures_entry, measured, nest_entry, write_entry
 from pipeline.report.nestentries import wish_entry
+from pipeline.report.traveller_numbers import counted
 from pipeline.run import JobResult
 from pipeline.sidefiles import side_files
 from pipeline.store import POOL_SCHEMA
@@ -112,9 +113,5 @@ def pool_lines(pool: Pool, out: str) -> list[str]:
         ]
     copies = sum(pattern.quantity for group, _ in pool.results for pattern in group.patterns)
     sheets = sum(len(result.nest.product.layouts) for _, result in pool.results if result.nest.product is not None)
-    made = f"{_counted(copies, 'piece')} of {_counted(len(pool.jobs), 'job')} on {_counted(sheets, 'sheet')}"
+    made = f"{counted(copies, 'piece')} of {counted(len(pool.jobs), 'job')} on {counted(sheets, 'sheet')}"
     return [*lines, f"made: {made} and report.json in {out}"]
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"

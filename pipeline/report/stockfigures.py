@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from pipeline.report.traveller_numbers import counted
+
 if TYPE_CHECKING:
     from pipeline.run import JobResult
     from stages.model.pattern import FlatPattern
@@ -54,11 +56,11 @@ def layout_lines(layouts: "Sequence[SheetLayout]", patterns: "Mapping[str, FlatP
 
 
 def _words(layout: "SheetLayout", patterns: "Mapping[str, FlatPattern]") -> Iterator[str]:
-    count, used, free = len(layout.placements), used_of_roll(layout, patterns), layout.offcut
+    used, free = used_of_roll(layout, patterns), layout.offcut
     yield f"{layout.sheet.id} {layout.index}"
     if layout.sheet.kind != "sheet":
         yield layout.sheet.kind
-    yield f"{count} piece{'' if count == 1 else 's'}"
+    yield counted(len(layout.placements), "piece")
     yield f"utilisation {100.0 * layout.utilisation:.1f} %"
     if used is not None:
         yield f"used {used:.6g} mm"

@@ -17,8 +17,9 @@ from pipeline.report.markup import Child, Element, element, shown
 from pipeline.report.pages import asset, page
 from pipeline.report.results import guarded, number
 from pipeline.report.summarycharts import bars, charts, heading
-from pipeline.report.summaryrows import MADE, REPORTED, JobRow
+from pipeline.report.summaryrows import MADE, JobRow
 from pipeline.report.summarytally import LISTED, tally
+from pipeline.report.traveller_numbers import counted
 
 COLUMNS = (
     "job", "status", "cause", "class", "parts", "parts_failed", "utilisation", "seconds", "part", "stage", "metric",
@@ -86,10 +87,11 @@ def verdict(document: Document, statuses: Mapping[str, Row]) -> Element:
     """Return what comes first: how many jobs were made."""
     jobs, made = document["jobs"], statuses.get(MADE, {}).get("jobs", 0)
     good = jobs == made
-    parts = f"{document['parts']} parts, {document['parts_failed']} failed, {shown(document['seconds'], 's')} of work."
-    word = f"{sign(good)} {made} of {jobs} jobs made"
+    parts = counted(int(str(document["parts"])), "part")
+    more = f"{parts}, {document['parts_failed']} refused by their geometry, {shown(document['seconds'], 's')} of work."
+    word = f"{sign(good)} {made} of {counted(int(str(jobs)), 'job')} made"
     return element(
-        "div", element("h1", "Batch"), element("div", word, cls="word"), element("div", parts),
+        "div", element("h1", "Batch"), element("div", word, cls="word"), element("div", more),
         id="verdict", role="status", cls=None if good else "bad",
     )  # fmt: skip
 
@@ -99,10 +101,10 @@ def sign(good: bool) -> str:
     return "\u2713" if good else "\u2717"
 
 
-def link(job: object) -> Element:
-    """Return the name of a job that left a report, as a link to it."""
-    name = str(job)
-    return element("a", name, href=f"{quote(name, safe='')}/report.html")
+def link(one: Row) -> Child:
+    """Return the name of a job, as a link to its report where it left one."""
+    name, report = str(one["job"]), one["report"]
+    return name if report is None else element("a", name, href=f"{quote(name, safe='')}/{report}")
 
 
 def causes(document: Document) -> Element:
@@ -118,7 +120,7 @@ def worst_parts(document: Document) -> Element:
     heads = ("Job", "Part", "Metric", "Value", "Limit", "Load", "Verdict", "Evidence")
     rows = [
         row(
-            link(one["job"]), str(one["part"]), f"{one['stage']} {one['metric']}",
+            link(one), str(one["part"]), f"{one['stage']} {one['metric']}",
             figure(one["value"], one["unit"]), figure(one["limit"], one["unit"]), figure(one["load"]),
             passed(one["pass"] is True), str(one["evidence"]),
         )
@@ -137,11 +139,10 @@ def worst_jobs(document: Document) -> Element:
 def job_row(one: Row) -> Element:
     """Return the row of a job."""
     worst, status = one["worst"], str(one["status"])
-    name = link(one["job"]) if status in REPORTED else str(one["job"])
     told = element("span", f"{sign(status == MADE)} {status}", cls="pass" if status == MADE else "fail")
     load = worst.get("load") if isinstance(worst, dict) else None
     figures = (figure(value) for value in (one["parts"], one["parts_failed"], load, one["seconds"]))
-    return row(name, told, str(one["class"] or "\u2013"), str(one["cause"]), *figures)
+    return row(link(one), told, str(one["class"] or "\u2013"), str(one["cause"]), *figures)
 
 
 def passed(good: bool) -> Element:

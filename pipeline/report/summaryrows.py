@@ -15,7 +15,9 @@ from dataclasses import dataclass
 import msgspec
 
 from pipeline.report.document import Document
-from pipeline.report.entries import MetricEntry, PartEntry, ReportEntry, StageEntry
+from pipeline.report.entries import Number, PartEntry, ReportEntry, StageEntry
+from pipeline.report.html import PAGE
+from pipeline.store import REPORT
 from stages.model.tolerances import CLASSES
 
 MADE = "made"
@@ -27,8 +29,6 @@ CLASS_ORDER = ("rejected", "inconclusive", *reversed(CLASSES))
 """From the worst to the best."""
 LONGEST = 120
 """Characters of a cause that is a text."""
-
-Number = int | float
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,10 @@ class Held:
 
 @dataclass(frozen=True, slots=True)
 class JobRow:
-    """A job of a batch; `parts` and `failed` count its parts, `held` has the worst number of each part."""
+    """A job of a batch; `parts` and `failed` count its parts, `held` has the worst number of each part.
+
+    report: the file in its folder that tells more, the page where it has one; None where it left no report.
+    """
 
     job: str
     status: str
@@ -72,6 +75,7 @@ class JobRow:
     utilisation: float | None
     seconds: float
     held: tuple[Held, ...]
+    report: str | None = None
 
     @property
     def worst(self) -> Held | None:
@@ -100,8 +104,13 @@ def job_row(job: str, status: str, cause: str, seconds: float, report: bytes | N
     return JobRow(
         job, status, cause, "" if status == MADE else _group(found) or f"{status}: {grouped(cause)}".removesuffix(": "),
         min(classes, key=_rank, default=None), len(found.parts), sum(_failed(part) for part in found.parts),
-        _utilisation(found), seconds, tuple(one for one in held if one is not None),
+        _utilisation(found), seconds, tuple(one for one in held if one is not None), _told_in(found),
     )  # fmt: skip
+
+
+def _told_in(found: ReportEntry) -> str:
+    """Return the file in which a job is told of best."""
+    return PAGE if found.job.formats is None or "html" in found.job.formats else REPORT
 
 
 def _rank(reached: str) -> int:
@@ -116,18 +125,11 @@ def _held(part: PartEntry) -> Iterator[Held]:
     """Yield the numbers of a part that have a limit."""
     for stage in part.stages:
         for metric in stage.metrics:
-            if _number(metric.value) and _number(metric.limit):
-                yield _beside(part.name, stage.stage, metric, metric.value, metric.limit)
-
-
-def _number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _beside(part: str, stage: str, metric: MetricEntry, value: object, limit: object) -> Held:
-    if not isinstance(value, int | float) or not isinstance(limit, int | float):
-        raise ValueError("a load is of numbers")
-    return Held(part, stage, metric.name, value, limit, metric.unit, metric.evidence, metric.passed)
+            value, limit = metric.value, metric.limit
+            if not (value is None or limit is None or isinstance(value, bool) or isinstance(limit, bool)):
+                yield Held(
+                    part.name, stage.stage, metric.name, value, limit, metric.unit, metric.evidence, metric.passed
+                )
 
 
 def _group(found: ReportEntry) -> str:

@@ -114,7 +114,7 @@ def tally(rows: Iterable[JobRow]) -> Document:
     parts = failed = 0
     seconds = 0.0
     trend = Trend()
-    worst_parts = Worst[tuple[str, Held]](lambda one: one[1].gravity)
+    worst_parts = Worst[tuple[JobRow, Held]](lambda one: one[1].gravity)
     worst_jobs = Worst[JobRow](lambda row: row.gravity)
     for row in rows:
         statuses[row.status] += 1
@@ -128,7 +128,7 @@ def tally(rows: Iterable[JobRow]) -> Document:
         trend.add(row)
         worst_jobs.offer(row)
         for held in row.held:
-            worst_parts.offer((row.job, held))
+            worst_parts.offer((row, held))
     jobs = statuses.total()
     return {
         "schema": SCHEMA,
@@ -140,7 +140,9 @@ def tally(rows: Iterable[JobRow]) -> Document:
         "classes": _counted(classes, classes.total(), "class", (*reversed(CLASS_ORDER),)),
         "causes": pareto(causes, examples),
         "trend": [one.document() for one in trend.bins],
-        "worst_parts": [{"job": job, **held_document(held)} for job, held in worst_parts.sorted()],
+        "worst_parts": [
+            {"job": row.job, "report": row.report, **held_document(held)} for row, held in worst_parts.sorted()
+        ],
         "worst_jobs": [job_document(row) for row in worst_jobs.sorted()],
     }
 
@@ -172,5 +174,5 @@ def job_document(row: JobRow) -> Document:
     return {
         "job": row.job, "status": row.status, "cause": row.cause, "class": row.reached, "parts": row.parts,
         "parts_failed": row.failed, "utilisation": row.utilisation, "seconds": row.seconds,
-        "worst": None if worst is None else held_document(worst),
+        "report": row.report, "worst": None if worst is None else held_document(worst),
     }  # fmt: skip

@@ -13,6 +13,7 @@ from math import ceil
 
 import numpy as np
 
+from pipeline.report.shades import BACK_RGB, FRONT_RGB, LIGHT
 from pipeline.report.shopentries import FormedEntry
 from pipeline.report.traveller_ink import QUIET, Pen, said
 from pipeline.report.traveller_numbers import millimetres
@@ -20,11 +21,8 @@ from pipeline.report.viewcells import COLUMNS
 from pipeline.report.viewentries import Numbers, Ruled, Triangles
 from stages.geometry.arrays import Array, Indices, Points3, cross3, norm
 
-LIGHT = np.array([-0.45, 0.55, 0.70])
-FRONT = np.array([0.78, 0.88, 0.96])
-BACK = np.array([0.93, 0.87, 0.74])
 SHADE = 0.34
-"""Light from the upper left; the side that is seen flat is blue, the other sand-coloured, as in the previews."""
+"""How much darker a face is that the light does not meet: a little more than in the previews, for paper."""
 
 TONES = 128
 """From dark to light on each side: steps of less than a grey level of 255."""
@@ -134,7 +132,7 @@ def _tones(seen: Array) -> list[int]:
 
 def _shades() -> Iterator[str]:
     """Yield the operators that choose each shade."""
-    for side in (FRONT, BACK):
+    for side in (FRONT_RGB, BACK_RGB):
         for lit in np.linspace(0.0, 1.0, TONES):
             colour = " ".join(f"{part:.3f}" for part in side * (1.0 - SHADE * (1.0 - lit)))
             yield f"{colour} rg {colour} RG {SEAM} w "

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from pipeline.report.shopentries import DetailEntry, PartEntry
+from pipeline.report.shopentries import DetailEntry, FlatEntry, PartEntry
 from pipeline.report.traveller_flow import Column, Row, Table
 from pipeline.report.traveller_numbers import DASH, degrees, millimetres, square
 from pipeline.sidelines import BendRow, Radii, RollRow
@@ -18,7 +18,7 @@ def forming_tables(part: PartEntry, width_mm: float) -> Iterator[Table]:
         if stage.detail.rolls:
             yield _roll_table(stage.detail, width_mm)
     if part.flat is not None and (part.flat.holes or part.flat.marks):
-        yield _place_table(part, width_mm)
+        yield _place_table(part.flat, width_mm)
 
 
 def _k_note(detail: DetailEntry) -> str:
@@ -84,20 +84,15 @@ def _pair(values: Radii) -> str:
     return first if first == last else f"{first} / {last}"
 
 
-def _place_table(part: PartEntry, width_mm: float) -> Table:
+def _place_table(flat: FlatEntry, width_mm: float) -> Table:
     """Return holes and marks with their places."""
-    flat = part.flat
     columns = (
         Column("name", width_mm * 0.4),
         Column("x", width_mm * 0.2, "right", "mm"),
         Column("y", width_mm * 0.2, "right", "mm"),
         Column("area", width_mm * 0.2, "right"),
     )
-    holes = (
-        [Row((one.name, millimetres(one.x), millimetres(one.y), square(one.area))) for one in flat.holes]
-        if flat
-        else []
-    )
-    marks = [Row((one.name, millimetres(one.x), millimetres(one.y), DASH)) for one in flat.marks] if flat else []
+    holes = [Row((one.name, millimetres(one.x), millimetres(one.y), square(one.area))) for one in flat.holes]
+    marks = [Row((one.name, millimetres(one.x), millimetres(one.y), DASH)) for one in flat.marks]
     note = "In the frame of the flat pattern: x to the right, y up, as it is drawn unturned."
     return Table("Holes and marks", columns, (*holes, *marks), note)

@@ -1,4 +1,4 @@
-"""Numbers as people on the shop floor read them: to what a tape or a protractor shows, the report has them in full."""
+"""Numbers as people read them on pages and in lines: to what a tape or a protractor shows."""
 
 FINE_MM = 100.0
 """Below this two decimals of a mm are written, above one: a calliper's and a tape's."""
@@ -44,9 +44,10 @@ def plain(value: float | bool | None, unit: str = "") -> str:
 
 
 def counted(count: int | None, thing: str) -> str:
-    """Return how many there are of a thing."""
-    number = "no" if count is None else str(count)
-    return f"{number} {thing}" if count == 1 else f"{number} {thing}s"
+    """Return how many there are of a thing, as far as it is known."""
+    if count is None:
+        return f"{thing}s not known"
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
 
 
 def share(value: float) -> str:

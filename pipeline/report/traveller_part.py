@@ -225,7 +225,7 @@ def nearest(part: PartEntry) -> Sequence[tuple[str, MetricEntry]]:
         (stage.stage, metric)
         for stage in part.stages
         for metric in stage.metrics
-        if metric.limit is not None and metric.value is not None
+        if metric.limit is not None and (metric.value is not None or not metric.passed)
     ]
     return sorted(checks, key=lambda check: (check[1].passed, -_share(check[1])))
 

@@ -28,7 +28,7 @@ from pipeline.report.traveller_ink import (
     stroked,
 )
 from pipeline.report.traveller_numbers import counted, degrees, kilograms, millimetres, plain, share
-from pipeline.report.traveller_part import head_blocks
+from pipeline.report.traveller_part import CHIP_HIGH_MM, CHIP_MM, CHIP_PT, head_blocks
 from pipeline.report.traveller_pattern import DENOMINATORS, scale_text
 from stages.geometry.arcpath import ArcPath, bounds
 from stages.geometry.rigid import Rigid2, apply, matrix
@@ -88,8 +88,6 @@ def sheet_blocks(sheet: Nested, report: ReportEntry, room_mm: tuple[float, float
 
 def used_chip(utilisation: float) -> str:
     """Return how much of a sheet is used, framed as verdicts are."""
-    from pipeline.report.traveller_part import CHIP_HIGH_MM, CHIP_MM, CHIP_PT
-
     up = (CHIP_HIGH_MM - CAPITALS * CHIP_PT * MM_PER_POINT) / 2.0
     words = f"{share(utilisation)} used"
     return area(0.0, 0.0, CHIP_MM, CHIP_HIGH_MM, INK) + said(

@@ -7,11 +7,10 @@ import numpy as np
 
 from stages.construct.curves import ends
 from stages.construct.quintic import Vector
-from stages.geometry.arrays import Values, Vector3, dot, norm
+from stages.geometry.arrays import Values, Vector3, dot, floats, norm
 from stages.geometry.curves import Curve
 from stages.geometry.extremum import maximum
 from stages.model.report import Finding
-from stages.model.scalars import floats
 
 
 def apex_findings(curves: Sequence[Curve], apex: Vector) -> tuple[Finding, ...]:

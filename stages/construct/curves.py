@@ -14,11 +14,10 @@ from math import pi, radians
 
 import numpy as np
 
-from stages.geometry.arrays import Vector3, norm, unit
+from stages.geometry.arrays import Vector3, floats, norm, unit
 from stages.geometry.curves import Circular, Curve, bezier, exactly, rational, restrict
 from stages.geometry.ruled import RuledPatch, between
 from stages.model.curves import ArcSpec, BSplineSpec, CircleSpec, CurveSpec, EllipseSpec, HelixSpec
-from stages.model.scalars import floats
 
 Row = Sequence[Fraction]
 

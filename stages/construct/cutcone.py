@@ -23,7 +23,7 @@ import numpy as np
 
 from stages.construct.apex import apex_findings
 from stages.construct.quintic import ZERO, Vector, combine, inner, scaling, vector
-from stages.geometry.arrays import EPS, Values, dot, norm
+from stages.geometry.arrays import EPS, Values, dot, floats, norm
 from stages.geometry.curves import (
     Bezier,
     Curve,
@@ -39,7 +39,6 @@ from stages.geometry.ruled import RuledPatch, between
 from stages.geometry.stepped import Share, Stepped, constant
 from stages.model.part import Cone, Plane
 from stages.model.report import Finding
-from stages.model.scalars import floats
 
 Made = tuple[tuple[RuledPatch, ...], tuple[Finding, ...]]
 KEYS = ("start_plane", "end_plane")

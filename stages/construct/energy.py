@@ -19,9 +19,8 @@ from math import comb
 import numpy as np
 
 from stages.construct.quintic import End
-from stages.geometry.arrays import Array, Matrix, norm
+from stages.geometry.arrays import Array, Matrix, floats, norm
 from stages.geometry.leastvalue import least
-from stages.model.scalars import floats
 
 LEAST_ALPHA = 0.05
 """alpha is kept above this share of the chord over |T|: below, the curve leaves its tangent within a few hundredths."""

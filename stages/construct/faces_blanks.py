@@ -8,7 +8,7 @@ one; elsewhere a tree, each face unrolled by itself and laid against its neighbo
 from collections.abc import Sequence
 
 from stages.construct.faces_hinges import Meeting, meetings
-from stages.construct.faces_joined import STRAIGHT_RULING, Blank, along, middle_of, not_joined, strips_of
+from stages.construct.faces_joined import ONE_DIRECTION_RAD, Blank, along, middle_of, not_joined, strips_of
 from stages.construct.faces_tree import Apart, Grown, grown, in_order, reversed_meeting
 from stages.geometry.arrays import Vector3, norm, unit
 from stages.model.cadface import CadBody, CadFace, CadJoint
@@ -44,7 +44,7 @@ def _blank(faces: Sequence[CadFace], group: tuple[int, ...], tree: Grown, edges:
 def _strip(faces: Sequence[CadFace], group: tuple[int, ...], hinges: Sequence[Meeting]) -> Blank | None:
     """Return a group as a strip; None where its hinges are not parallel or it branches."""
     directions: list[Vector3] = [along(unit(one.ends[1] - one.ends[0])) for one in hinges]
-    if any(float(norm(way - directions[0])) > STRAIGHT_RULING for way in directions):
+    if any(float(norm(way - directions[0])) > ONE_DIRECTION_RAD for way in directions):
         return None
     strips = strips_of(CadBody(tuple(faces[i] for i in group)))
     return strips[0] if len(strips) == 1 else None

@@ -20,7 +20,7 @@ from stages.construct.curves import chain
 from stages.construct.faces_based import Based
 from stages.construct.faces_ground import Ground, ground_of
 from stages.construct.features import MEETS, SAMPLES, NoPlaceError, Placement, checked, gap, placement
-from stages.geometry.arrays import Points2, Values, Vector2, Vector3, norm
+from stages.geometry.arrays import Points2, Values, Vector2, Vector3, floats, norm
 from stages.geometry.curves import Curve, restrict
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.pullback import APART, SAME, nearest, pulled_back, rivals
@@ -29,7 +29,6 @@ from stages.geometry.tabled import tabled
 from stages.model.curves import CurveSpec, PlanePoint, is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks
 from stages.model.part import PartSpec
-from stages.model.scalars import floats
 from stages.model.surface import Placed
 from stages.model.tolerances import Tolerances
 

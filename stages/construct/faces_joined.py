@@ -22,7 +22,7 @@ from stages.geometry.strip import Strip, jet
 from stages.model.cadface import CadBody, CadFace, CadPlane, CadSweep
 from stages.model.report import Finding
 
-STRAIGHT = 1e-9
+OFF_LINE = 1e-9
 """Share of its length by which an edge may leave the line between its ends, and rad by which it may leave a ruling."""
 SENSE = np.array([1.0, 0.6180339887498949, 0.3819660112501051])
 """Of two opposite directions that along this one is taken: across it lies nothing that people draw."""
@@ -116,7 +116,7 @@ def chosen(joints: Sequence[Joint]) -> tuple[list[Joint], list[tuple[Joint, str]
         beside = [one for one in taken if {one.before, one.after} & {joint.before, joint.after}]
         if any(one.before == joint.before or one.after == joint.after for one in beside):
             apart.append((joint, "a strip has no branches"))
-        elif any(norm(one.direction - joint.direction) > STRAIGHT for one in beside):
+        elif any(norm(one.direction - joint.direction) > OFF_LINE for one in beside):
             apart.append((joint, "its rulings would not be parallel"))
         elif root(joint.before) == root(joint.after):
             apart.append((joint, "the ring is cut open there"))
@@ -164,7 +164,7 @@ def is_straight(points: Points3) -> bool:
     """Return whether points lie on the line from the first to the last, which is another one."""
     step = points[-1] - points[0]
     off = norm(np.cross(points - points[0], unit(step)))
-    return bool(norm(step) > 0.0 and off.max() <= STRAIGHT * norm(step))
+    return bool(norm(step) > 0.0 and off.max() <= OFF_LINE * norm(step))
 
 
 def joinable_of(face: CadFace) -> Joinable | None:
@@ -213,7 +213,7 @@ def _joint(one: tuple[int, Joinable], other: tuple[int, Joinable], ends: Matrix)
     """Return the joint of two faces along an edge; None where they do not go over into each other."""
     direction = along(unit(ends[1] - ends[0]))
     curved = [side.form.direction for _, side in (one, other) if isinstance(side.form, CadSweep)]
-    if any(norm(way - direction) > STRAIGHT_RULING for way in curved):
+    if any(norm(way - direction) > ONE_DIRECTION_RAD for way in curved):
         return None
     direction = curved[0] if curved else direction
     middle = ends.mean(axis=0)
@@ -226,8 +226,8 @@ def _joint(one: tuple[int, Joinable], other: tuple[int, Joinable], ends: Matrix)
     return Joint(other[0], one[0], ends, direction) if sides == [BEGINNING, END] else None
 
 
-STRAIGHT_RULING = 1e-7
-"""rad; what files keep of directions."""
+ONE_DIRECTION_RAD = 1e-7
+"""Rulings that differ by less are one direction: what files keep of it."""
 
 
 def normal_at(side: Joinable, point: Vector3) -> Vector3:

@@ -14,7 +14,7 @@ import numpy as np
 
 from stages.construct.faces_ruled import Rails
 from stages.construct.quintic import Vector, combine, scaling, vector
-from stages.geometry.arrays import Array, Points3, Values, Vector3, cross3, dot
+from stages.geometry.arrays import Array, Points3, Values, Vector3, cross3, dot, floats
 from stages.geometry.backwards import exchanged
 from stages.geometry.curves import Circular, Curve, affine, exactly, rational
 from stages.geometry.pullback import nearest
@@ -96,7 +96,7 @@ Affine = tuple[Sequence[Sequence[Fraction]], Sequence[Fraction]]
 
 def _levelled(curve: Curve, d: Vector, low: Fraction) -> Affine:
     """Return the map that slides the points of a curve along d to the plane at `low`."""
-    height = curve.jet(np.linspace(0.0, 1.0, 9), 0)[0] @ np.array([float(x) for x in d])
+    height = curve.jet(np.linspace(0.0, 1.0, 9), 0)[0] @ floats(d)
     if np.ptp(height) <= LEVEL * (np.abs(height).max() + 1.0):
         return scaling(Fraction(1)), combine((low - Fraction(float(height[0])), d))
     rows = [combine((1, axis), (-x, d)) for axis, x in zip(scaling(Fraction(1)), d, strict=True)]

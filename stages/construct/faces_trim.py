@@ -23,7 +23,7 @@ from stages.model.surface import Trim
 
 STEPS = 64
 """Places in the table of an edge, between which Newton's method starts."""
-STRAIGHT = 1e-9
+SNAPPED = 1e-9
 """Of u, or of a patch in v: what runs along a ruling or an edge of the strip to within rounding of both."""
 MEETS = 1e-6
 """Share of the size by which edges that are one, or that make a loop or a ring, may miss each other: ten times what CAD
@@ -100,10 +100,10 @@ def _pulled(strip: Strip, curve: Curve) -> tuple[float, Ways]:
     off = float(norm(points(strip, *edge.table.T) - every).max())
     inner = edge.table[1:-1]
     v = _one_end(strip, inner[:, 1])
-    if np.ptp(v) <= STRAIGHT:
+    if np.ptp(v) <= SNAPPED:
         return off, _along_ruling(strip, curve, float(np.median(v)))
     for side in (0.0, 1.0):
-        if np.abs(inner[:, 0] - side).max() <= STRAIGHT:
+        if np.abs(inner[:, 0] - side).max() <= SNAPPED:
             return off, (_along_edge(strip, edge, side),)
     return off, (tabled(edge, strip),)
 
@@ -111,14 +111,14 @@ def _pulled(strip: Strip, curve: Curve) -> tuple[float, Ways]:
 def _one_end(strip: Strip, v: Values) -> Values:
     """Return places on the seam of a closed strip at its beginning all of them, any others as they are."""
     first, last = float(strip.knots[0]), float(strip.knots[-1])
-    on_seam = np.minimum(v - first, last - v) <= STRAIGHT
+    on_seam = np.minimum(v - first, last - v) <= SNAPPED
     return np.full_like(v, first) if on_seam.all() and closes(strip) else v
 
 
 def _along_ruling(strip: Strip, curve: Curve, v: float) -> Ways:
     """Return the line of u and v of a curve along the ruling at v; both ends of a closed strip are one ruling."""
     first, last = float(strip.knots[0]), float(strip.knots[-1])
-    v = next((float(knot) for knot in strip.knots if abs(v - knot) <= STRAIGHT), v)
+    v = next((float(knot) for knot in strip.knots if abs(v - knot) <= SNAPPED), v)
     c0, p = (row[0] for row in rulings(strip, np.array([v])))
     ends = (curve.jet(np.array([0.0, 1.0]), 0)[0] - c0) @ p / float(dot(p, p))
     u = _snapped(ends)
@@ -128,14 +128,14 @@ def _along_ruling(strip: Strip, curve: Curve, v: float) -> Ways:
 
 def _snapped(u: Values) -> Values:
     """Return 0 or 1 where u is that to rounding."""
-    return np.where(np.abs(u - np.round(u)) <= STRAIGHT, np.clip(np.round(u), 0.0, 1.0), u)
+    return np.where(np.abs(u - np.round(u)) <= SNAPPED, np.clip(np.round(u), 0.0, 1.0), u)
 
 
 def _along_edge(strip: Strip, edge: PulledBack, side: float) -> Segment:
     """Return the line of u and v along c0 or c1."""
     v = edge.table[[0, -1], 1]
     knots = strip.knots[np.argmin(np.abs(v[:, None] - strip.knots), axis=1)]
-    v = np.where(np.abs(v - knots) <= STRAIGHT, knots, v)
+    v = np.where(np.abs(v - knots) <= SNAPPED, knots, v)
     return Segment(np.array([side, v[0]]), np.array([side, v[1]]))
 
 
@@ -154,7 +154,7 @@ def closed(strip: Strip, run: Sequence[PlaneCurve]) -> tuple[PlaneCurve, ...]:
         gap = _way(strip, end, start)
         if gap > MEETS * size(strip):
             raise OpenLoopError(gap)
-        if norm(end - start) > STRAIGHT and gap <= STRAIGHT * size(strip):
+        if norm(end - start) > SNAPPED and gap <= SNAPPED * size(strip):
             made.append(Segment(end, start))
     return tuple(made)
 

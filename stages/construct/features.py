@@ -16,7 +16,7 @@ import numpy as np
 from stages.construct.curves import chain
 from stages.construct.plain import plane_edges
 from stages.geometry.arclength import Speed, reached
-from stages.geometry.arrays import Array, Points2, Points3, Values, Vector2, Vector3, norm
+from stages.geometry.arrays import Array, Points2, Points3, Values, Vector2, Vector3, floats, norm
 from stages.geometry.curves import Curve
 from stages.geometry.plane import PlaneCurve
 from stages.geometry.pullback import PulledBack, nearest, pulled_back, rivals
@@ -27,7 +27,6 @@ from stages.model.curves import CurveSpec, PlanePoint, in_numbers, is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks, name_of
 from stages.model.part import Flat, PartSpec
 from stages.model.report import Finding, Metric
-from stages.model.scalars import floats
 from stages.model.surface import Placed
 from stages.model.tolerances import Tolerances
 

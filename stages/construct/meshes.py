@@ -27,7 +27,7 @@ from stages.construct.meshsolid import thin_solid
 from stages.construct.plain import PlaneFrame
 from stages.construct.plates import placed_in_plane
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Numbers, Points3, diagonal, norm
+from stages.geometry.arrays import Numbers, Points3, diagonal, floats, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcut import Opened, area, edge_lengths, ends_of, opened, turnings
 from stages.geometry.meshrepair import Repair, repaired
@@ -46,7 +46,6 @@ from stages.model.material import Part
 from stages.model.meshes import MeshFile
 from stages.model.part import PartSpec
 from stages.model.report import Finding, Metric, Outcome, StageReport
-from stages.model.scalars import floats
 from stages.model.surface import MeshSurface, RuledSurface, Surface
 from stages.model.tolerances import Tolerances
 

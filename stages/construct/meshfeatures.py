@@ -10,7 +10,7 @@ import numpy as np
 
 from stages.construct.curves import chain
 from stages.construct.features import NoPlaceError, Placement, placement
-from stages.geometry.arrays import Points3, Vector3, cross3, diagonal, norm, unit
+from stages.geometry.arrays import Points3, cross3, diagonal, floats, norm, unit
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshborder import beyond
 from stages.geometry.meshnearest import OnMesh, at, nearest
@@ -29,7 +29,6 @@ from stages.model.features import (
 )
 from stages.model.part import PartSpec
 from stages.model.report import Finding
-from stages.model.scalars import floats
 from stages.model.surface import Placed
 from stages.model.tolerances import Tolerances
 
@@ -39,8 +38,11 @@ PER_PIECE = 65
 ROUND = 72
 """Points of the circle of a drilled hole."""
 
-ROUNDS = 8
+ROUNDS, MOST_ROUNDS = 8, 64
 """Moves of its points towards the drill's distance from the axis; each leaves about r^2 / R^2 of what was missing."""
+
+ON_DRILL = 1e-6
+"""Share of its radius by which they may miss it: more rounds are made until then."""
 
 BEYOND = 1e-6
 """A place that is off the edge of the mesh by more than this share of its size is not on the part."""
@@ -131,21 +133,18 @@ def _drilled(mesh: Mesh, centre: OnMesh, radius: float) -> OnMesh:
     turn = 2.0 * np.pi * np.arange(ROUND + 1)[:, None] / ROUND
     out = np.cos(turn) * x + np.sin(turn) * np.cross(axis, x)
     height = np.zeros((ROUND + 1, 1))
-    for _ in range(ROUNDS):
+    for number in range(1, MOST_ROUNDS + 1):
         there = middle + radius * out + height * axis
         found = nearest(mesh, there)
-        height = ((at(mesh, found, mesh.vertices) - middle) @ axis)[:, None]
-    _refuse_short(mesh, found, middle, axis, radius)
+        off = at(mesh, found, mesh.vertices) - middle
+        height = (off @ axis)[:, None]
+        missed = float(np.abs(norm(off - height * axis) - radius).max())
+        if number >= ROUNDS and missed <= ON_DRILL * radius:
+            return found
+    if missed > ROUND_ENOUGH * radius:
+        raise NoPlaceError("hole-outside", "the drill leaves the surface before it has come round")
     return found
 
 
-ROUND_ENOUGH = 0.02
+ROUND_ENOUGH = 1e-3
 """A drilled hole of which a point misses the drill by more than this share of its radius did not come round."""
-
-
-def _refuse_short(mesh: Mesh, found: OnMesh, middle: Vector3, axis: Vector3, radius: float) -> None:
-    """Refuse a drill that leaves the mesh before it has come round."""
-    off = at(mesh, found, mesh.vertices) - middle
-    away = norm(off - (off @ axis)[:, None] * axis)
-    if float(np.abs(away - radius).max()) > ROUND_ENOUGH * radius:
-        raise NoPlaceError("hole-outside", "the drill leaves the surface before it has come round")

@@ -18,7 +18,7 @@ import numpy as np
 
 from stages.construct.bands import LEANING_DEG, positions
 from stages.construct.curves import Chain, even
-from stages.geometry.arrays import Array, ArrayValue, Points3, Values, cross3, diagonal, dot, norm, unit
+from stages.geometry.arrays import Array, ArrayValue, Points3, Values, cross3, diagonal, dot, floats, norm, unit
 from stages.geometry.curves import bezier, exactly
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshborder import beyond
@@ -29,7 +29,6 @@ from stages.geometry.meshtopology import Edges, edges_of, turned, with_turned
 from stages.geometry.smoothing import followed
 from stages.model.meshes import MeshNormals
 from stages.model.report import Finding, Metric, Where
-from stages.model.scalars import floats
 from stages.model.tolerances import Tolerances
 
 Meshes = Mapping[MeshNormals, Mesh]

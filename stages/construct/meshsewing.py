@@ -12,14 +12,14 @@ import numpy as np
 
 from stages.construct.meshfaults import place, text
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Numbers, Points3, norm
+from stages.geometry.arrays import Numbers, Points3, floats, norm
 from stages.geometry.mesh import Mesh
 from stages.geometry.meshcut import along, edge_lengths
 from stages.geometry.meshslit import followed, slit
 from stages.geometry.meshtopology import Edges, boundary_loops, edges_of, on_border
 from stages.model.meshes import MeshFile
 from stages.model.report import Finding, Metric, Where
-from stages.model.scalars import Point, floats
+from stages.model.scalars import Point
 from stages.model.surface import MeshSurface
 
 OFF = 3.0

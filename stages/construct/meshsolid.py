@@ -45,8 +45,8 @@ class Skin:
 
     @property
     def metrics(self) -> tuple[Metric, ...]:
-        """Return the thickness as a metric."""
-        return (Metric("solid_thickness_mm", self.thickness_mm, "mm", "proved"),)
+        """Return the thickness as a metric: sampled, for it is the mean over the vertices of one skin."""
+        return (Metric("solid_thickness_mm", self.thickness_mm, "mm"),)
 
 
 def thin_solid(part: Part, mesh: Mesh, tol: Tolerances) -> Skin | None:

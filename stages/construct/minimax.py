@@ -17,10 +17,9 @@ import numpy as np
 
 from stages.construct.quintic import End
 from stages.errors import NoSolutionError
-from stages.geometry.arrays import Array, Matrix, Values, norm
+from stages.geometry.arrays import Array, Matrix, Values, floats, norm
 from stages.geometry.basis import bernstein_basis, bernstein_sum, differences
 from stages.geometry.curves import Bezier
-from stages.model.scalars import floats
 
 DEGREE = 4
 """Degree of r'."""

@@ -24,6 +24,7 @@ from stages.construct.quintic import (
 from stages.construct.shape import Patch, settled
 from stages.construct.strip import joins_detail, strip_ends
 from stages.construct.through import strip_through
+from stages.geometry.arrays import floats
 from stages.model.quintics import (
     SHAPE_KEYS,
     QuinticCone,
@@ -33,7 +34,6 @@ from stages.model.quintics import (
 )
 from stages.model.quinticstrip import QuinticStrip
 from stages.model.report import Finding, Metric
-from stages.model.scalars import floats
 from stages.model.tolerances import Tolerances
 
 EndPair = tuple[End, End]

@@ -14,12 +14,11 @@ import numpy as np
 from stages.construct.curves import Chain, chain, plane_axes
 from stages.construct.quintic import ZERO, Vector, combine, inner, scaling, vector
 from stages.geometry import contours
-from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector3, cross2, dot, norm, unit
+from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector3, cross2, dot, floats, norm, unit
 from stages.geometry.curves import Along, Bezier, Circular, Curve, affine, exactly
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
 from stages.geometry.ruled import RuledPatch
 from stages.model.part import Cone, Cylinder, Plane
-from stages.model.scalars import floats
 
 
 def cone_patches(spec: Cone, directrix: Chain) -> tuple[RuledPatch, ...]:
@@ -54,7 +53,7 @@ def cylinder_patches(spec: Cylinder, directrix: Chain) -> tuple[RuledPatch, ...]
     if spec.end_plane:
         end = meeting(spec.end_plane, d)
     else:
-        size = float(norm(np.array([float(x) for x in d])))
+        size = float(norm(floats(d)))
         end = (start[0], start[1] + exactly([float(spec.length or 0) / size])[0])
     length = combine((1, end[0]), (-1, start[0])), end[1] - start[1]
     return tuple(

@@ -8,13 +8,12 @@ from stages.construct.curves import Chain, chain, largest_gap
 from stages.construct.features import NoPlaceError, placement
 from stages.construct.plain import PlaneFrame, closed_chain, in_plane, plane_edges, plane_of
 from stages.geometry import contours
-from stages.geometry.arrays import Points3, Values, dot, norm
+from stages.geometry.arrays import Points3, Values, dot, floats, norm
 from stages.model.curves import is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks
 from stages.model.material import Part
 from stages.model.part import Flat
 from stages.model.report import Finding, Metric, Outcome, StageReport
-from stages.model.scalars import floats
 from stages.model.surface import Placed, Plate, Surface
 from stages.model.tolerances import Tolerances
 

@@ -21,13 +21,12 @@ from stages.construct.built import Built
 from stages.construct.curves import Chain, common_pieces, spline
 from stages.construct.meshnormals import NO_MESHES, Meshes, mesh_normals
 from stages.construct.plain import closed_chain
-from stages.geometry.arrays import dot, unit
+from stages.geometry.arrays import dot, floats, unit
 from stages.geometry.curves import Curve
 from stages.geometry.envelope import Conjugate, crossing_sine, normal_share, room, swept, turn
 from stages.model.envelopes import Ribbon
 from stages.model.meshes import MeshNormals
 from stages.model.report import Finding, Metric, Where
-from stages.model.scalars import floats
 from stages.model.tolerances import Tolerances
 
 Pieces = list[tuple[Curve, Curve]]

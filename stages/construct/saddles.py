@@ -22,7 +22,7 @@ import numpy as np
 
 from stages.construct.plain import directrix_of, meeting
 from stages.construct.quintic import combine, vector
-from stages.geometry.arrays import ArrayValue, Vector3, dot, norm, unit
+from stages.geometry.arrays import ArrayValue, Vector3, dot, floats, norm, unit
 from stages.geometry.curves import Along, Circular, Curve, Difference, affine, exactly, restrict
 from stages.geometry.extremum import minimum
 from stages.geometry.halfchord import TOUCHING, HalfChord, excess
@@ -30,7 +30,6 @@ from stages.geometry.ruled import RuledPatch
 from stages.model.ducts import Saddle, Tee
 from stages.model.part import Cylinder
 from stages.model.report import Finding
-from stages.model.scalars import floats
 
 Made = tuple[tuple[RuledPatch, ...], tuple[Finding, ...]]
 

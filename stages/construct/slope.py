@@ -22,14 +22,14 @@ import numpy as np
 from stages.construct.curves import Chain
 from stages.construct.plain import ALMOST_UPRIGHT, closed_chain
 from stages.construct.tangent import place, stop_findings
-from stages.geometry.arrays import ArrayValue, Values, Vector3, dot, norm, unit
+from stages.geometry.arrays import ArrayValue, Values, Vector3, dot, floats, norm, unit
 from stages.geometry.curves import Circular, Curve, affine, bezier, exactly
 from stages.geometry.extremum import maximum
 from stages.geometry.ruled import RuledPatch
 from stages.geometry.tangents import end_tangents, total, unit_tangent
 from stages.model.developables import Slope
 from stages.model.report import Finding, Metric, Where
-from stages.model.scalars import RIGHT_ANGLE, floats
+from stages.model.scalars import RIGHT_ANGLE
 from stages.model.tolerances import Tolerances
 
 Made = tuple[tuple[RuledPatch, ...], tuple[Metric, ...], tuple[Finding, ...]]
@@ -104,13 +104,13 @@ def _normal(spec: Slope, link: Chain) -> Vector3 | None:
         return _unit(floats(turning.normal))
     points = _samples(link)
     _, extents, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    if extents[1] <= STRAIGHT * extents[0]:
-        return UP if abs(axes[0] @ UP) <= STRAIGHT else None
+    if extents[1] <= THIN * extents[0]:
+        return UP if abs(axes[0] @ UP) <= THIN else None
     return _unit(_upwards(axes[2]))
 
 
 UP = np.array([0.0, 0.0, 1.0])
-STRAIGHT = 1e-9
+THIN = 1e-9
 """Of the extent of a curve: less across is rounding, of coordinates far from the origin too."""
 
 
@@ -122,7 +122,7 @@ def _unit(vector: Vector3) -> Vector3:
 
 def _upwards(normal: Vector3) -> Vector3:
     """Return the normal or its opposite: the one whose last component that is not zero is positive."""
-    last = next(x for x in normal[::-1] if abs(x) > STRAIGHT)
+    last = next(x for x in normal[::-1] if abs(x) > THIN)
     return np.asarray(np.sign(last) * normal)
 
 

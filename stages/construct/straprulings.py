@@ -78,12 +78,12 @@ def piece_ruling(curve: Curve) -> Curve | RunsOff:
         made = bending(curve)
         if made.inflections:
             return RunsOff(tuple(made.poles)) if made.poles else through(made)
-    return Rectifying(curve) if flattest.value * size > STRAIGHT else RunsOff((flattest.v,))
+    return Rectifying(curve) if flattest.value * size > UNCURVED else RunsOff((flattest.v,))
 
 
 GENTLE = 1e-3
 """Curvature times size below which a place is looked at exactly."""
-STRAIGHT = 1e-6
+UNCURVED = 1e-6
 """Curvature times size below which a place is straight: sampled, so not at rounding."""
 
 

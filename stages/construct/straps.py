@@ -66,13 +66,13 @@ def _rulings(curves: Sequence[Curve], half: float, tol: Tolerances) -> tuple[lis
         return [], stuck
     found = [None if is_straight(curve) else piece_ruling(curve) for curve in curves]
     if all(one is None for one in found):
-        return [], (Finding("strap-inflection", STRAIGHT, True, place(0, 0.0)),)
+        return [], (Finding("strap-inflection", NO_FACING, True, place(0, 0.0)),)
     stuck = inflection_findings(curves, found, half, tol)
     made = [one for one in found if not isinstance(one, RunsOff)]
     return ([], stuck) if stuck else over_straight(curves, made, half, tol)
 
 
-STRAIGHT = (
+NO_FACING = (
     "the centre curve has straight pieces only and lies in no one plane: nothing says which way the strap faces; "
     "round the corners, or make it a flat part"
 )

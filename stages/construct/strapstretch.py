@@ -1,7 +1,8 @@
 """Where the centre line of a strap has inflections that split it, and the longest part that has a strap all the same.
 
 Towards such an inflection the rulings lean over without bound, faster and faster: a part that ends short of it has a
-strap of half width w as long as w |d lambda / ds| < 1, lambda = tau / kappa.  Sampled, its ends by bisection.
+strap of half width w as long as w |d lambda / ds| < 1, lambda = tau / kappa.  Sampled, its ends by bisection.  Between
+two curved pieces a straight one is counted with the first alone: whether a strap twists along it is not asked here.
 """
 
 from collections.abc import Callable, Sequence
@@ -67,7 +68,7 @@ def longest(curves: Sequence[Curve], found: Sequence[Found], half: float, tol: T
     """Return the longest part of the chain that has a strap of this half width."""
     parts: list[Stretch] = []
     for piece, (curve, one) in enumerate(zip(curves, found, strict=True)):
-        follows = piece > 0 and _goes_on(found[piece - 1], one, curves[piece - 1 : piece + 1], half, tol)
+        follows = piece > 0 and _goes_on(found[:piece], one, curves[piece - 1 : piece + 1], half, tol)
         here = _stretches(piece, curve, one, half)
         if follows and parts and here and parts[-1].end == here[0].start:
             before = parts.pop()
@@ -76,13 +77,16 @@ def longest(curves: Sequence[Curve], found: Sequence[Found], half: float, tol: T
     return max(parts, key=lambda part: part.length_mm, default=None)
 
 
-def _goes_on(before: Found, after: Found, curves: Sequence[Curve], half: float, tol: Tolerances) -> bool:
-    """Return whether a strap goes on from one piece to the next: onto a straight one it always does."""
+def _goes_on(before: Sequence[Found], after: Found, curves: Sequence[Curve], half: float, tol: Tolerances) -> bool:
+    """Return whether a strap goes on to a piece from the last of those before: onto a straight one it always does.
+
+    So it does from straight ones with which the chain begins: they take the ruling that follows.
+    """
     if after is None:
         return True
-    if before is None:
-        return False
-    g, h = value(_rulings(before, curves[0]), 1.0), value(_rulings(after, curves[1]), 0.0)
+    if before[-1] is None:
+        return all(one is None for one in before)
+    g, h = value(_rulings(before[-1], curves[0]), 1.0), value(_rulings(after, curves[1]), 0.0)
     return half * min(float(norm(g - h)), float(norm(g + h))) <= tol.join_mm
 
 

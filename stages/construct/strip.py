@@ -23,6 +23,7 @@ from stages.construct.quintic import (
     vector,
 )
 from stages.construct.shape import Patch
+from stages.geometry.arrays import floats
 from stages.geometry.curves import Bezier
 from stages.model.quintics import (
     SHAPE_KEYS,
@@ -96,8 +97,8 @@ def _join(before: Pair, after: Pair) -> dict[str, object]:
     return {
         "gamma0": float(start.alpha),
         "mu0": float(start.beta),
-        "t0": [float(x) for x in start.T],
-        "n0": [float(x) for x in start.N],
+        "t0": floats(start.T).tolist(),
+        "n0": floats(start.N).tolist(),
         "k2": float(start.k),
         "first_derivative_residual": max(first for first, _ in jumps),
         "second_derivative_residual": max(second for _, second in jumps),

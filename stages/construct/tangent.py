@@ -65,7 +65,7 @@ STOPPED = 1e-6
 def _straight_findings(edge: Chain) -> tuple[Finding, ...]:
     for i, curve in enumerate(edge.curves):
         (bend, _), *_ = maxima(partial(_bends, curve))
-        if bend <= STRAIGHT:
+        if bend <= UNTURNED:
             message = f"piece {i} of the edge is straight: its tangents are one line, and no surface"
             return (Finding("edge-straight", message, True, {"piece": i}),)
     return ()
@@ -78,7 +78,7 @@ def _bends(curve: Curve, v: Values) -> Array:
     return turn[:, None]
 
 
-STRAIGHT = 1e-9
+UNTURNED = 1e-9
 """A tangent that turns less, rad over the whole piece, turns by rounding: of coordinates of 1e6 times the length."""
 
 

@@ -13,12 +13,11 @@ import numpy as np
 
 from stages.construct.quintic import End
 from stages.geometry import bernstein
-from stages.geometry.arrays import Array, dot, norm
+from stages.geometry.arrays import Array, dot, float_rows, floats, norm
 from stages.geometry.bernstein import Polynomial, cross, derivative, inner, subtract, vector_from_points
 from stages.geometry.curves import Bezier
 from stages.geometry.ruled import RuledPatch
 from stages.model.report import Finding, Metric
-from stages.model.scalars import floats
 from stages.model.tolerances import Tolerances
 
 DEGREE_A, DEGREE_C = 13, 9
@@ -51,8 +50,8 @@ def coefficients_c(patch: RuledPatch) -> tuple[tuple[Fraction, ...], ...]:
 def coefficients(patches: tuple[RuledPatch, ...]) -> dict[str, object]:
     """Return every A_i and C~_i of every patch, rounded once."""
     return {
-        "A": [[float(a) for a in coefficients_a(patch)] for patch in patches],
-        "C_tilde": [[[float(c) for c in row] for row in coefficients_c(patch)] for patch in patches],
+        "A": [floats(coefficients_a(patch)).tolist() for patch in patches],
+        "C_tilde": [float_rows(coefficients_c(patch)).tolist() for patch in patches],
     }
 
 

@@ -91,7 +91,7 @@ def widened(edges: Sequence[PlaneCurve], distances_mm: Sequence[float], *, accur
     """
     strips: list[Strip] = []
     for number, (edge, distance) in enumerate(zip(edges, distances_mm, strict=True)):
-        if _is_point(edge):
+        if is_point(edge):
             continue
         curve = parallel(edge, distance)
         if isinstance(curve, Hollow):
@@ -100,7 +100,8 @@ def widened(edges: Sequence[PlaneCurve], distances_mm: Sequence[float], *, accur
     return _joined(edges, strips, accuracy)
 
 
-def _is_point(edge: PlaneCurve) -> bool:
+def is_point(edge: PlaneCurve) -> bool:
+    """Return whether an edge has no length that a reader could tell: that of an apex."""
     points = edge.at(np.linspace(0.0, 1.0, LOOKS))
     return bool(norm(points - points[0]).max() <= ZERO_LENGTH_MM)
 

@@ -12,24 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stages.geometry import arcs
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values, Vector2, cross2, dot, norm, unit
 from stages.geometry.rigid import Rigid2, apply
-
-SMALL_SWEEP = 0.1
-"""Below this the area of a segment is summed as a series: its next term is 1e-14, the closed form loses 1e-13."""
-
-SEGMENT_SERIES = (1.0 / 25200.0, 1.0 / 840.0, 1.0 / 30.0, 1.0)
-"""Of 12 (a - sin a) / (8 a sin^2(a/2)) in powers of a^2, highest first."""
-
-FLAT_BULGE = 1e-15
-"""An arc flatter than this is a line: its height over the chord is under the rounding of the chord's ends."""
-
-ROUNDING = 1e-9
-"""What a count of equal parts may be over a whole number by rounding alone."""
-
-QUARTER = np.pi / 2.0
-WIDEST_STEP = np.pi / 3.0
-"""A polygon never takes a longer step than this along an arc, however coarse it may be."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,14 +40,12 @@ class ArcPath(ArrayValue):
 
 def sweeps(path: ArcPath) -> Values:
     """Return the signed sweep of each piece in rad, closing piece included on a closed path."""
-    sweep: Values = 4.0 * np.arctan(_bends(path))
-    return sweep
+    return arcs.sweeps(path.bulges[: piece_count(path)])
 
 
 def _bends(path: ArcPath) -> Values:
     """Return the bulges of the pieces, those of lines in all but name set to 0."""
-    bulge = path.bulges[: piece_count(path)]
-    return np.where(np.abs(bulge) < FLAT_BULGE, 0.0, bulge)
+    return arcs.bends(path.bulges[: piece_count(path)])
 
 
 def piece_count(path: ArcPath) -> int:
@@ -92,30 +75,18 @@ def centres(path: ArcPath) -> Points2:
 
 def radii(path: ArcPath) -> Values:
     """Return the radii of the pieces in mm; infinite for straight ones."""
-    start, end = chords(path)
-    bulge = np.abs(_bends(path))
-    straight = bulge == 0.0
-    safe = np.where(straight, 1.0, bulge)
-    return np.where(straight, np.inf, norm(end - start) * (1.0 / safe + safe) / 4.0)
+    return arcs.radii(*chords(path), _bends(path))
 
 
 def curvatures(path: ArcPath) -> Values:
     """Return the signed curvature of each piece in 1/mm, positive counter-clockwise; 0 for a piece of no length."""
-    start, end = chords(path)
-    bulge = _bends(path)
-    chord = norm(end - start)
-    return np.divide(4.0 * bulge, chord * (1.0 + bulge**2), out=np.zeros_like(chord), where=chord > 0.0)
+    return arcs.curvatures(*chords(path), _bends(path))
 
 
 def lengths(path: ArcPath) -> Values:
     """Return the length of each piece in mm; exact."""
     start, end = chords(path)
-    chord: Values = norm(end - start)
-    if not path.bulges.any():
-        return chord
-    half = np.abs(sweeps(path)) / 2.0
-    arc: Values = chord / np.sinc(half / np.pi)
-    return arc
+    return arcs.lengths(start, end, sweeps(path)) if path.bulges.any() else norm(end - start)
 
 
 def length(path: ArcPath) -> float:
@@ -130,25 +101,12 @@ def area(path: ArcPath) -> float:
 
 def swept(path: ArcPath, about: Vector2) -> Values:
     """Return the area in mm2 that the line from a point sweeps over along each piece, counter-clockwise; exact."""
-    start, end = chords(path)
-    sweep = sweeps(path)
-    chord = norm(end - start)
-    # a circular segment of sweep a over the chord c: c^2 (a - sin a) / (8 sin^2(a/2)); by series where that cancels
-    small = np.abs(sweep) < SMALL_SWEEP
-    safe = np.where(small, 1.0, sweep)
-    closed_form = (safe - np.sin(safe)) / (8.0 * np.sin(safe / 2.0) ** 2)
-    series = sweep / 12.0 * np.polyval(np.array(SEGMENT_SERIES), np.where(small, sweep, 0.0) ** 2)
-    triangles: Values = 0.5 * cross2(start - about, end - about) + chord**2 * np.where(small, series, closed_form)
-    return triangles
+    return arcs.areas(*chords(path), sweeps(path), about)
 
 
 def directions(path: ArcPath) -> tuple[Values, Values]:
     """Return the direction angles at the start and at the end of each piece, in rad."""
-    start, end = chords(path)
-    chord = end - start
-    along = np.arctan2(chord[:, 1], chord[:, 0])
-    half = sweeps(path) / 2.0
-    return along - half, along + half
+    return arcs.directions(*chords(path), sweeps(path))
 
 
 def joint_turns(path: ArcPath) -> Values:
@@ -165,24 +123,20 @@ def joint_turns(path: ArcPath) -> Values:
 def along(path: ArcPath, piece: Indices, fraction: Values) -> Points2:
     """Return the points at `fraction` of the sweep of the pieces, in mm; exact for any sweep, 0 included."""
     start, end = chords(path)
-    chord = (end - start)[piece]
-    half = sweeps(path)[piece] / 2.0
-    # the chord from the start to the point at f has length chord * sin(f a/2) / sin(a/2), turned by (f - 1) a/2
-    scale = fraction * np.sinc(fraction * half / np.pi) / np.sinc(half / np.pi)
-    points: Points2 = start[piece] + _turned(chord, (fraction - 1.0) * half) * scale[:, None]
-    return points
+    return arcs.between(start[piece], end[piece], sweeps(path)[piece], fraction)
 
 
 def distances(points: Points2, path: ArcPath, piece: Indices) -> Values:
     """Return the distance of each point to its piece of the path, in mm; exact for sweeps up to a half circle.
 
-    To the carrier where the point lies between the normals at both ends of the piece, to the nearer end elsewhere.
+    To the carrier where the point lies between the normals at both ends of the piece, to the nearer end elsewhere, as
+    for a piece of no length.
     """
     start, end = (ends[piece] for ends in chords(path))
     half = (sweeps(path) / 2.0)[piece]
     forward = unit(end - start)
-    leaving, arriving = _turned(forward, -half), _turned(forward, half)
-    between = (dot(points - start, leaving) >= 0.0) & (dot(points - end, arriving) <= 0.0)
+    leaving, arriving = arcs.turned(forward, -half), arcs.turned(forward, half)
+    between = (dot(points - start, leaving) >= 0.0) & (dot(points - end, arriving) <= 0.0) & forward.any(axis=1)
     carrier = carrier_distance(points - start, leaving, curvatures(path)[piece])
     return np.where(between, np.abs(carrier), np.minimum(norm(points - start), norm(points - end)))
 
@@ -200,7 +154,9 @@ def carrier_distance(offset: Array, tangent: Array, curvature: Array) -> Array:
 
 def split(path: ArcPath, *, max_bulge: float) -> ArcPath:
     """Return the same path with its arcs cut into equal parts, none with a bulge above `max_bulge`; exact."""
-    count = np.maximum(np.ceil(np.abs(sweeps(path)) / (4.0 * np.arctan(max_bulge)) - ROUNDING), 1.0).astype(np.int64)
+    count = np.maximum(np.ceil(np.abs(sweeps(path)) / (4.0 * np.arctan(max_bulge)) - arcs.ROUNDING), 1.0).astype(
+        np.int64
+    )
     return divided(path, count)
 
 
@@ -242,13 +198,7 @@ def bounds(path: ArcPath) -> tuple[float, float, float, float]:
 
 def furthest(path: ArcPath) -> tuple[Indices, Points2]:
     """Return the points at which arcs are furthest out along x and y, mm, with the pieces that they lie on."""
-    first, _ = directions(path)
-    sweep = sweeps(path)
-    # an arc is furthest out where its direction is a multiple of 90 degrees
-    turn = np.where(sweep[:, None] >= 0.0, 1.0, -1.0) * (np.arange(4) * QUARTER - first[:, None])
-    turn = np.mod(turn, 2.0 * np.pi)
-    piece, quarter = np.nonzero(turn < np.abs(sweep)[:, None])
-    return piece, along(path, piece, turn[piece, quarter] / np.abs(sweep)[piece])
+    return arcs.furthest(*chords(path), sweeps(path))
 
 
 def polygon(path: ArcPath, *, accuracy: float, outside: bool = False) -> Points2:
@@ -258,7 +208,7 @@ def polygon(path: ArcPath, *, accuracy: float, outside: bool = False) -> Points2
     contains it: arcs that swell outward are replaced by tangents, hollow ones by chords (a part may only grow).
     """
     sweep = sweeps(path)
-    steps = _steps(np.abs(sweep), radii(path), accuracy)
+    steps = arcs.steps(np.abs(sweep), radii(path), accuracy)
     swelling = (sweep > 0.0) if outside else np.zeros(sweep.size, dtype=bool)
     # a piece gives its start and, if it swells, the corner of two tangents in each step, else the inner chord points
     count = np.where(swelling, steps + 1, steps)
@@ -276,21 +226,8 @@ def _overshoot(path: ArcPath, steps: NDArray[np.int64], piece: Indices, fraction
     """Return how far the corner of two tangents lies beyond the middle of its step, to the right of the path."""
     first, _ = directions(path)
     sweep = sweeps(path)[piece]
-    angle = first[piece] + sweep * fraction - QUARTER
+    angle = first[piece] + sweep * fraction - arcs.QUARTER
     half = sweep / steps[piece] / 2.0
     reach = radii(path)[piece] * 2.0 * np.sin(half / 2.0) ** 2 / np.cos(half)
     beyond: Points2 = reach[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     return beyond
-
-
-def _steps(sweep: Values, radius: Values, accuracy: float) -> Indices:
-    """Return into how many equal parts arcs are cut so that chord and tangent stay within `accuracy`."""
-    step = np.minimum(4.0 * np.arcsin(np.sqrt(accuracy / (radius + accuracy) / 2.0)), WIDEST_STEP)
-    curved = sweep > 0.0
-    return np.where(curved, np.ceil(sweep / np.where(curved, step, 1.0) - ROUNDING), 1.0).clip(1.0).astype(np.int64)
-
-
-def _turned(vectors: Points2, angle: Values) -> Points2:
-    """Return the vectors turned by the angles in rad, counter-clockwise."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]], axis=1)

@@ -6,7 +6,9 @@ at all (it would double the time to start), and there the names stand for plain 
 
 import dataclasses
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -50,10 +52,11 @@ class ArrayValue:
     """
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
+        # the names alone: `dataclasses.fields` takes longer than all else for values of a few numbers
+        for name in self.__dataclass_fields__:
+            value = getattr(self, name)
             if isinstance(value, np.ndarray):
-                object.__setattr__(self, field.name, _numbers(value) if value.dtype.kind == "i" else locked(value))
+                object.__setattr__(self, name, _numbers(value) if value.dtype.kind == "i" else locked(value))
         self.check()
 
     def check(self) -> None:
@@ -79,6 +82,16 @@ def _numbers(values: Numbers) -> Numbers:
     copy = np.array(values, dtype=np.int64)
     copy.setflags(write=False)
     return copy
+
+
+def floats(values: Iterable[Fraction]) -> Array:
+    """Return exact numbers as float64, each rounded once, shape (n,)."""
+    return np.array([float(value) for value in values])
+
+
+def float_rows(rows: Iterable[Iterable[Fraction]]) -> Array:
+    """Return rows of exact numbers as float64, each rounded once, shape (n, m)."""
+    return np.array([[float(value) for value in row] for row in rows])
 
 
 def cross2(a: Array, b: Array) -> Array:

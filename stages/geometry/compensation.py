@@ -5,14 +5,16 @@ leaves something standing, and notches narrower than it, where it leaves all.  W
 contour is its distance from the way, less half the beam.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from stages.geometry.arcpath import ArcPath, along, area, lengths
-from stages.geometry.arrays import ArrayValue, Points2, Vector2
+from stages.geometry.arrays import ArrayValue, Numbers, Points2, Vector2
 from stages.geometry.beside import Corners, beside, nearest
 from stages.geometry.clearance import clearance, pieces
+from stages.geometry.manypaths import piece_lengths, points_at, row
 
 SHARES = (0.0, 0.25, 0.5, 0.75)
 """Where on each piece it is measured what is left standing: the deepest place is a vertex, or amid an arc."""
@@ -65,19 +67,20 @@ def fit(contour: ArcPath, way: ArcPath, half_mm: float) -> Fit:
     nearer = half_mm - clearance(pieces(way), pieces(contour), within=2.0 * half_mm)
     if not np.isfinite(nearer):
         return Fit(np.inf, np.inf)
-    off = np.abs(nearest(middles(way, half_mm), contour, 2.0 * half_mm) - half_mm)
+    off = np.abs(nearest(middles([way], half_mm)[0], contour, 2.0 * half_mm) - half_mm)
     return Fit(max(nearer, float(off.max(initial=0.0))), _most_left(contour, way, half_mm)[1])
 
 
-def middles(way: ArcPath, half_mm: float) -> Points2:
-    """Return the middles of the long pieces of a way."""
-    long = np.flatnonzero(lengths(way) > LONG_HALVES * half_mm)
-    return along(way, long, np.full(long.size, 0.5))
+def middles(ways: Sequence[ArcPath], half_mm: float) -> tuple[Points2, Numbers]:
+    """Return the middles of the long pieces of some ways, and the number of the way of each."""
+    every = row(ways)
+    long = np.flatnonzero(piece_lengths(every) > LONG_HALVES * half_mm)
+    return points_at(every, long, np.full(long.size, 0.5)), every.owner[long]
 
 
 def _most_left(contour: ArcPath, way: ArcPath, half_mm: float) -> tuple[Vector2, float]:
     """Return where on a contour the most is left standing, and how much, mm."""
-    places = looked_at(contour)
+    places, _ = looked_at([contour])
     reach = (1.0 + 2.0 * DEEPEST_BEAMS) * half_mm
     far = nearest(places, way, 2.0 * reach)
     while not np.isfinite(far).all():
@@ -87,7 +90,8 @@ def _most_left(contour: ArcPath, way: ArcPath, half_mm: float) -> tuple[Vector2,
     return places[most], max(float(far[most]) - half_mm, 0.0)
 
 
-def looked_at(contour: ArcPath) -> Points2:
-    """Return the places of a contour at which it is measured."""
-    every = np.repeat(np.arange(lengths(contour).size), len(SHARES))
-    return along(contour, every, np.tile(SHARES, lengths(contour).size))
+def looked_at(contours: Sequence[ArcPath]) -> tuple[Points2, Numbers]:
+    """Return the places of some contours at which it is measured, and the number of the contour of each."""
+    every = row(contours)
+    piece = np.repeat(np.arange(every.bulge.size), len(SHARES))
+    return points_at(every, piece, np.tile(SHARES, every.bulge.size)), every.owner[piece]

@@ -10,8 +10,9 @@ are halved, until they are apart.  A meeting counts if each of the two sheets go
 of the size at least: sheets that touch (a seam, an apex, an edge on a face, turns that lie on each other) do not cross.
 
 Cells that turn together by less than two steps are neighbours, and a developable sheet that bends by less than half a
-turn does not come back to itself.  Sampled, not proved: hulls rest on second derivatives at three places of a cell, and
-after `MOST_PAIRS` the search ends.  Two folds that cross exactly along both their edges are taken for touching.
+turn does not come back to itself.  Sampled, not proved: hulls rest on second derivatives at three places of a cell.
+Two folds that cross exactly along both their edges are taken for touching.  Where sheets lie on each other over a whole
+area no halving takes them apart: after `MOST_PAIRS` or `HALVINGS` the search ends, and says what it left (`Unsettled`).
 
 .. [1] N. M. Patrikalakis, T. Maekawa, "Shape Interrogation for Computer Aided Design and Manufacturing", 2002, ch. 5.
 """
@@ -70,6 +71,29 @@ class Crossing:
     depth_mm: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Unsettled:
+    """Pairs of cells that were neither taken apart nor found to cross when the search ended: they touch, or cross.
+
+    cell_mm: the longest diagonal of a cell of them.  patches, v, u and point (in the middle of a cell): one pair.
+    """
+
+    pairs: int
+    cell_mm: float
+    patches: tuple[int, int]
+    v: tuple[float, float]
+    u: tuple[float, float]
+    point: Vector3
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """What was found: the deepest crossing of every two patches that cross, and what stayed open, if anything did."""
+
+    found: tuple[Crossing, ...] = ()
+    unsettled: Unsettled | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class _Strip:
     """The surface: its first cells, whether its ends are one ruling, and which ends of patches (n, 2) are edges."""
@@ -90,10 +114,10 @@ class _Sheet:
     s_v: Array
 
 
-def crossings(patches: Sequence[RuledPatch], size_mm: float) -> list[Crossing]:
+def crossings(patches: Sequence[RuledPatch], size_mm: float) -> Search:
     """Return the deepest crossing found of every two patches that cross (a patch with itself too), in their order."""
     if is_planar(patches)[0]:
-        return []
+        return Search()
     strip = _strip(patches, size_mm)
     cells, deep = strip.cells, RESOLUTION * size_mm
     first, second = near_pairs(cells, deep)
@@ -111,7 +135,24 @@ def crossings(patches: Sequence[RuledPatch], size_mm: float) -> list[Crossing]:
         if a.patch.size > MOST_PAIRS:
             break
         a, b = _smaller(strip, a, b)
-    return [found[key] for key in sorted(found)]
+    left = _left(a, b, found, deep)
+    return Search(tuple(found[key] for key in sorted(found)), _unsettled(strip, *left))
+
+
+def _unsettled(strip: _Strip, a: Cells, b: Cells) -> Unsettled | None:
+    """Return what is said of the pairs that are left, with the first of them for an example."""
+    if a.patch.size == 0:
+        return None
+    diagonals = [norm(np.ptp(cells.corners, axis=1)).max() for cells in (a, b)]
+    patches, (v, u) = (int(a.patch[0]), int(b.patch[0])), _middles(a, b)
+    middle = at(strip.patches[patches[0]], np.array(u[:1]), np.array(v[:1]))[0]
+    return Unsettled(a.patch.size, float(max(diagonals)), patches, v, u, middle)
+
+
+def _middles(a: Cells, b: Cells) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return v and u in the middle of both cells of the first pair."""
+    v, u = ((float(one[0].mean()), float(other[0].mean())) for one, other in ((a.v, b.v), (a.u, b.u)))
+    return v, u
 
 
 def _strip(patches: Sequence[RuledPatch], size_mm: float) -> _Strip:

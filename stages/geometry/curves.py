@@ -16,7 +16,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Points3, Values, Vector3
+from stages.geometry.arrays import Array, ArrayValue, Points3, Values, Vector3, float_rows, floats
 from stages.geometry.basis import bernstein_jet
 
 ExactPoint = tuple[Fraction, Fraction, Fraction]
@@ -149,7 +149,7 @@ class Along(ArrayValue):
 def bezier(exact: Sequence[Sequence[Fraction]]) -> Bezier:
     """Return the Bezier curve with these exact control points."""
     points = tuple((Fraction(x), Fraction(y), Fraction(z)) for x, y, z in exact)
-    return Bezier(points, np.array([[float(x) for x in point] for point in points]))
+    return Bezier(points, float_rows(points))
 
 
 def rational(exact: Sequence[Sequence[Fraction]]) -> RationalBezier:
@@ -160,9 +160,9 @@ def rational(exact: Sequence[Sequence[Fraction]]) -> RationalBezier:
     origin = _far_origin(points)
     # the largest weight becomes 1: weights count by their ratios, whatever the scale they were typed in
     largest = max(point[3] for point in points)
-    near = [[float((x - point[3] * o) / largest) for x, o in zip(point[:3], origin, strict=True)] for point in points]
-    weights = np.array([float(point[3] / largest) for point in points])
-    return RationalBezier(points, np.array([float(x) for x in origin]), np.array(near), weights)
+    near = [[(x - point[3] * o) / largest for x, o in zip(point[:3], origin, strict=True)] for point in points]
+    weights = floats(point[3] / largest for point in points)
+    return RationalBezier(points, floats(origin), float_rows(near), weights)
 
 
 def _far_origin(points: HomogeneousPoints) -> list[Fraction]:
@@ -194,8 +194,7 @@ def affine(curve: Curve, matrix: Sequence[Sequence[Fraction]], shift: Sequence[F
         return bezier([_image((*point, Fraction(1)), matrix, shift) for point in curve.exact])
     if isinstance(curve, RationalBezier):
         return rational([[*_image(point, matrix, shift), point[3]] for point in curve.exact])
-    m = np.array([[float(x) for x in row] for row in matrix])
-    d = np.array([float(x) for x in shift])
+    m, d = float_rows(matrix), floats(shift)
     if isinstance(curve, Circular):
         return Circular(m @ curve.centre + d, m @ curve.U, m @ curve.V, m @ curve.W, curve.start, curve.sweep)
     if isinstance(curve, Derived):

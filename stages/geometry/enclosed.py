@@ -1,21 +1,19 @@
 """Which points lie within closed contours of lines and arcs.
 
 Parity: the polygon of the chords, and each segment of a circle between chord and arc, turn the answer round.  A point
-on a contour counts as on either side of it.
+on a contour counts as on either side of it.  One that lies on a chord is taken for either side of that, but by polygon
+and segment alike, so that the answer is right: a lead at 45 degrees onto quarter circles runs along their chords.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stages.geometry.arrays import Array, Mask, Numbers, Points2, cross2
-from stages.geometry.clearance import Pieces, on_side, power
+from stages.geometry.clearance import Pieces, power
 
 
 def inside(point: Points2, closed: Pieces) -> Mask:
-    """Return which points lie within a closed contour; a point on the contour or on a chord may go either way.
-
-    Parity: the polygon of the chords, and each segment of a circle between chord and arc, turn the answer round.
-    """
+    """Return which points lie within a closed contour; a point on the contour may go either way."""
     flips = np.count_nonzero(_passed(closed.start[None], closed.end[None], point[:, None]), axis=1)
     for i in np.flatnonzero(closed.bulge):
         flips += _in_segment(point, closed.take(np.full(point.shape[0], i)))
@@ -43,6 +41,10 @@ def _passed(start: Array, end: Array, at: Array) -> NDArray[np.bool_]:
 
 
 def _in_segment(point: Points2, arc: Pieces) -> Mask:
-    """Return whether each point lies between its arc and the chord of that."""
-    within: Mask = (power(point, arc) < 0.0) & on_side(point, arc)
+    """Return whether each point lies between its arc and the chord of that, on the chord as `_passed` takes it."""
+    chord = arc.end - arc.start
+    left = cross2(chord, point - arc.start)
+    # what is not passed is left of a chord that runs down and right of one that runs up; above a level one
+    tied = np.where(chord[:, 1] == 0.0, chord[:, 0], -chord[:, 1])
+    within: Mask = (power(point, arc) < 0.0) & (arc.bulge * np.where(left == 0.0, tied, left) < 0.0)
     return within

@@ -25,7 +25,19 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Matrix, Values, Vector3, cross3, dot, locked, norm
+from stages.geometry.arrays import (
+    Array,
+    ArrayValue,
+    Matrix,
+    Values,
+    Vector3,
+    cross3,
+    dot,
+    float_rows,
+    floats,
+    locked,
+    norm,
+)
 from stages.geometry.curves import Curve, restrict
 from stages.geometry.extremum import maxima
 from stages.geometry.ruled import RuledPatch
@@ -151,8 +163,8 @@ class Image(ArrayValue):
 
     def image(self, matrix: Rows, shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
-        m = _rounded(matrix)
-        return Image(self.curve, m @ self.matrix, m @ self.shift + _vector(shift))
+        m = float_rows(matrix)
+        return Image(self.curve, m @ self.matrix, m @ self.shift + floats(shift))
 
     def part(self, low: Fraction, high: Fraction) -> Curve:
         """Return the part over [low, high]."""
@@ -161,15 +173,7 @@ class Image(ArrayValue):
 
 def image(curve: Curve, matrix: Rows, shift: Sequence[Fraction]) -> Image:
     """Return matrix @ curve + shift, by the values of the curve."""
-    return Image(curve, _rounded(matrix), _vector(shift))
-
-
-def _rounded(matrix: Rows) -> Matrix:
-    return np.array([[float(x) for x in row] for row in matrix])
-
-
-def _vector(values: Sequence[Fraction]) -> Vector3:
-    return np.array([float(value) for value in values])
+    return Image(curve, float_rows(matrix), floats(shift))
 
 
 def multiple(curve: Curve, factor: float) -> Curve:

@@ -112,10 +112,10 @@ class DevelopedRuling(ArrayValue):
         points = self.at(t)
         away = norm(points - np.outer(1.0 - t, points[0]) - np.outer(t, points[-1]))
         corners = self.piece.positions(np.array([0.0, 1.0, 0.0, 1.0]), np.array([0.0, 0.0, 1.0, 1.0]))
-        return bool(away.max() <= STRAIGHT * norm(corners).max())
+        return bool(away.max() <= ROUNDED * norm(corners).max())
 
 
 RULING_NODES = 26
 """Exact for flat rulings that are polynomials of a degree up to 25; those of least strain have at most 24."""
-STRAIGHT = 32 * EPS
+ROUNDED = 32 * EPS
 """Rounding of positions, as a share of the farthest corner's."""

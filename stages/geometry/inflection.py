@@ -23,7 +23,7 @@ from math import comb
 
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Values
+from stages.geometry.arrays import Array, ArrayValue, Values, float_rows
 from stages.geometry.basis import bernstein_jet
 from stages.geometry.bernstein import Polynomial, Vector, add, cross, derivative, from_bernstein, inner, multiply
 from stages.geometry.curves import Bezier, Curve, RationalBezier, homogeneous, raised
@@ -182,7 +182,7 @@ def _coefficients(f: Polynomial) -> list[Fraction]:
 def _table(columns: Sequence[Sequence[Fraction]]) -> Array:
     """Return Bernstein coefficients in one degree, in float64, as columns."""
     degree = max(len(column) for column in columns) - 1
-    return np.array([[float(c) for c in _in_degree(column, degree)] for column in columns]).T
+    return float_rows(_in_degree(column, degree) for column in columns).T
 
 
 def _in_degree(coefficients: Sequence[Fraction], degree: int) -> list[Fraction]:

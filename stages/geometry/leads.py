@@ -10,10 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from shapely import STRtree, box
 
-from stages.geometry.arcpath import ArcPath, along, area, backwards
+from stages.geometry import arcs
+from stages.geometry.arcpath import ArcPath, backwards
 from stages.geometry.arrays import Array, Mask, Numbers, Points2, Values, Vector2
-from stages.geometry.clearance import Pieces, between, boxes, distances, joined, pieces, point_distances
+from stages.geometry.clearance import Pieces, between, boxes, distances, point_distances
 from stages.geometry.enclosed import inside_own
+from stages.geometry.manypaths import areas, pieces, row
 
 FREE_SHARE = 0.02
 """Of a way from its end on the contour: an arc through 90 degrees is 5e-4 of its radius from the contour by then."""
@@ -49,18 +51,14 @@ ON_MM = 2e-6
 """A contour that was put together from a file goes through the end of a way as well as this."""
 
 
-NOTHING = between(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
-
-
 class Obstacles:
     """Contours of one sheet, their pieces found by their boxes.  Many ways are judged at once."""
 
     def __init__(self, paths: Sequence[ArcPath]) -> None:
-        some = [pieces(path) for path in paths]
         self.closed = np.array([path.closed for path in paths], dtype=bool)
-        self.hollow = np.array([path.closed and area(path) < 0.0 for path in paths], dtype=bool)
-        self.every = joined([NOTHING, *some])
-        self.owner = np.repeat(np.arange(len(some)), np.array([one.bulge.size for one in some], dtype=np.int64))
+        self.hollow = np.zeros(len(paths), dtype=bool)
+        self.hollow[self.closed] = areas([path for path in paths if path.closed]) < 0.0
+        self.every, self.owner = pieces(paths)
         self.tree = STRtree(box(*boxes(self.every).T))
 
     def rooms(self, ways: Sequence[ArcPath], own: Numbers, within: Values) -> Values:
@@ -113,11 +111,8 @@ class Obstacles:
 
 def _pieces(ways: Sequence[ArcPath]) -> tuple[Pieces, Numbers]:
     """Return the pieces of open paths, and the number of the path that each belongs to."""
-    number = np.repeat(np.arange(len(ways)), np.array([way.bulges.size - 1 for way in ways], dtype=np.int64))
-    if not ways:
-        return NOTHING, number
-    start, end = (np.concatenate([way.vertices[part] for way in ways]) for part in (slice(-1), slice(1, None)))
-    return between(start, end, np.concatenate([way.bulges[:-1] for way in ways])), number
+    every = row(ways)
+    return between(every.start, every.end, every.bulge), every.owner
 
 
 def _least(values: Array, number: Numbers, count: int) -> Array:
@@ -130,17 +125,8 @@ def _least(values: Array, number: Numbers, count: int) -> Array:
 def _without_ends(ways: Sequence[ArcPath]) -> tuple[Pieces, Numbers]:
     """Return the pieces of open paths, and the number of each piece's path, without what is next to their ends."""
     some, number = _pieces(ways)
-    if not ways:
-        return some, number
     last, share = np.flatnonzero(np.diff(number, append=-1)), 1.0 - FREE_SHARE
-    ends, bulges = some.end.copy(), some.bulge.copy()
-    ends[last] = along(_in_a_row(some.take(last)), 2 * np.arange(last.size), np.full(last.size, share))
+    ends, bulges, sweep = some.end.copy(), some.bulge.copy(), arcs.sweeps(some.bulge[last])
+    ends[last] = arcs.between(some.start[last], some.end[last], sweep, np.full(last.size, share))
     bulges[last] = np.tan(np.arctan(bulges[last]) * share)
     return between(some.start, ends, bulges), number
-
-
-def _in_a_row(some: Pieces) -> ArcPath:
-    """Return a path of the pieces and straight ways from each to the next: piece i is the one of number 2 i."""
-    corners = np.stack([some.start, some.end], axis=1).reshape(-1, 2)
-    bulges = np.stack([some.bulge, np.zeros_like(some.bulge)], axis=1).ravel()
-    return ArcPath(corners, bulges, closed=False)

@@ -1,8 +1,8 @@
 """How well each of many ways of a beam lies half a beam beside its own contour: small ones in a few passes over all.
 
 A sheet has hundreds of copies of contours of a few pieces each, and one by one they take longer than all else that is
-asked of a file.  Every piece of a way is paired with every piece of its contour, and every place with every piece.
-Contours of many pieces are measured one by one, by trees (`compensation.fit`).  Both say the same.
+asked of a file.  Every piece of a way is paired with the pieces of its contour that may be near, and every place with
+every piece.  Contours of many pieces are measured one by one, by trees (`compensation.fit`).  Both say the same.
 """
 
 from collections.abc import Sequence
@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from stages.geometry.arcpath import ArcPath
-from stages.geometry.arrays import Array, Numbers, Values
-from stages.geometry.clearance import Pieces, distances, joined, pieces, point_distances
+from stages.geometry.arrays import Array, Numbers, Points2, Values
+from stages.geometry.clearance import Pieces, boxes, distances, point_distances
 from stages.geometry.compensation import Fit, fit, looked_at, middles
+from stages.geometry.manypaths import pieces
 
 FEW_PAIRS = 2048
 """Pairs of pieces up to which a contour is measured with others."""
@@ -22,6 +23,9 @@ BLOCK = 200_000
 
 Measured = tuple[ArcPath, ArcPath]
 """A contour and the way beside it."""
+
+Pairs = tuple[Numbers, Numbers, Numbers]
+"""Places in two rows, and the number of what both belong to."""
 
 
 def fits(contours: Sequence[ArcPath], ways: Sequence[ArcPath], half_mm: float) -> list[Fit]:
@@ -41,40 +45,46 @@ def _blocks(numbers: Numbers, sizes: Numbers) -> list[Numbers]:
 
 
 def _together(every: Sequence[Measured], half_mm: float) -> list[Fit]:
-    contours, ways = [pieces(contour) for contour, _ in every], [pieces(way) for _, way in every]
-    apart = _nearest_pieces(ways, contours)
-    off = [np.abs(far - half_mm) for far in _nearest([middles(way, half_mm) for _, way in every], contours)]
-    left = _nearest([looked_at(contour) for contour, _ in every], ways)
+    contours, ways = ([pair[k] for pair in every] for k in (0, 1))
+    (of_contours, contour), (of_ways, way) = pieces(contours), pieces(ways)
+    one, other, owner = _near(_pairs(way, contour, len(every)), of_ways, of_contours, 2.0 * half_mm)
+    near = _most(-distances(of_ways.take(one), of_contours.take(other)), owner, np.full(len(every), -np.inf))
+    amid, on = middles(ways, half_mm)
+    off = _most(np.abs(_nearest(amid, on, of_contours, contour) - half_mm), on, np.zeros(len(every)))
+    places, at = looked_at(contours)
+    left = _most(_nearest(places, at, of_ways, way) - half_mm, at, np.zeros(len(every)))
     return [
-        Fit(max(half_mm - near, float(one.max(initial=0.0))), max(float(most.max()) - half_mm, 0.0))
-        if near <= 2.0 * half_mm
-        else Fit(np.inf, np.inf)
-        for near, one, most in zip(apart.tolist(), off, left, strict=True)
+        Fit(max(half_mm + near_mm, off_mm), left_mm) if -near_mm <= 2.0 * half_mm else Fit(np.inf, np.inf)
+        for near_mm, off_mm, left_mm in zip(near.tolist(), off.tolist(), left.tolist(), strict=True)
     ]
 
 
-def _nearest_pieces(some: Sequence[Pieces], others: Sequence[Pieces]) -> Values:
-    """Return the smallest distance of each set of pieces to the other set of its number, mm."""
-    one, other, owner = _pairs([part.bulge.size for part in some], [part.bulge.size for part in others])
-    least: Values = np.full(len(some), np.inf)
-    np.minimum.at(least, owner, distances(joined(some).take(one), joined(others).take(other)))
+def _near(pairs: Pairs, some: Pieces, others: Pieces, within: float) -> Pairs:
+    """Return the pairs of pieces whose boxes are not farther apart than that, mm."""
+    one, other, owner = pairs
+    (low, high), (from_low, to_high) = (np.split(boxes(pieces), 2, axis=1) for pieces in (some, others))
+    apart = np.maximum(low[one] - to_high[other], from_low[other] - high[one]).max(axis=1)
+    chosen = np.flatnonzero(apart <= within)
+    return one[chosen], other[chosen], owner[chosen]
+
+
+def _most(values: Array, owner: Numbers, least: Array) -> Array:
+    """Return the largest of the values of each owner, or its least one."""
+    np.maximum.at(least, owner, values)
     return least
 
 
-def _nearest(places: Sequence[Array], to: Sequence[Pieces]) -> list[Array]:
-    """Return the distance of each place of each set to the pieces of its number, mm."""
-    counts = [part.shape[0] for part in places]
-    one, other, _ = _pairs(counts, [part.bulge.size for part in to])
-    least = np.full(sum(counts), np.inf)
-    np.minimum.at(least, one, point_distances(np.concatenate(places)[one], joined(to).take(other)))
-    return np.split(least, np.cumsum(counts)[:-1])
+def _nearest(places: Points2, owner: Numbers, to: Pieces, of: Numbers) -> Values:
+    """Return the distance of each place to the pieces of the contour of its number, mm; of: that of each piece."""
+    one, other, _ = _pairs(owner, of, int(of[-1]) + 1)
+    return -_most(-point_distances(places[one], to.take(other)), one, np.full(places.shape[0], -np.inf))
 
 
-def _pairs(some: Sequence[int], others: Sequence[int]) -> tuple[Numbers, Numbers, Numbers]:
-    """Return all pairs of one of `some[k]` and one of `others[k]` for each k, as places in both rows, and k."""
-    first, second = np.array(some, dtype=np.int64), np.array(others, dtype=np.int64)
-    count = first * second
-    owner = np.repeat(np.arange(count.size), count)
-    place = np.arange(owner.size) - np.repeat(np.cumsum(count) - count, count)
+def _pairs(some: Numbers, others: Numbers, count: int) -> Pairs:
+    """Return all pairs of places in two rows of one owner, and that; the rows hold owners, rising, below a count."""
+    first, second = np.bincount(some, minlength=count), np.bincount(others, minlength=count)
+    both = first * second
+    owner = np.repeat(np.arange(count), both)
+    place = np.arange(owner.size) - np.repeat(np.cumsum(both) - both, both)
     start, begin = np.cumsum(first) - first, np.cumsum(second) - second
     return start[owner] + place // second[owner], begin[owner] + place % second[owner], owner

@@ -62,13 +62,13 @@ def _sharpest(mesh: Mesh, curvature: Values) -> SharpVertex | None:
     """Return where a curvature is largest, None where it is nowhere above 0."""
     vertex = int(np.argmax(curvature))
     size = float(np.ptp(mesh.vertices, axis=0).max())
-    if curvature[vertex] * size <= STRAIGHT:
+    if curvature[vertex] * size <= FIT_NOISE:
         return None
     x, y, z = (float(value) for value in mesh.vertices[vertex])
     return SharpVertex(float(curvature[vertex]), vertex, (x, y, z))
 
 
-STRAIGHT = 1e-6
+FIT_NOISE = 1e-6
 """Curvature over the size of a mesh below which it is none: fits of exact vertices leave as much."""
 
 

@@ -259,13 +259,13 @@ def _straightened(held: Chart, edge: PlaneCurve) -> PlaneCurve:
     curve = Pulled(held, edge)
     if not isinstance(edge, Segment):
         return curve
-    t = np.linspace(0.0, 1.0, STRAIGHT_SAMPLES)
+    t = np.linspace(0.0, 1.0, LINE_SAMPLES)
     places: Points2 = curve.at(t)
     line = Segment(places[0], places[-1])
-    return line if np.abs(places - line.at(t)).max() <= STRAIGHT else curve
+    return line if np.abs(places - line.at(t)).max() <= ON_LINE else curve
 
 
-STRAIGHT_SAMPLES, STRAIGHT = 9, 1e-12
+LINE_SAMPLES, ON_LINE = 9, 1e-12
 """Places on an edge, and what it may be off in u or v."""
 
 
@@ -291,6 +291,6 @@ def interpolated(held: Chart, edge: PlaneCurve, count: int) -> PlaneCurve:
     nodes = chebyshev.chebpts2(count)
     places = held.places(edge.at((nodes + 1.0) / 2.0))
     line = Segment(places[0], places[-1])
-    if np.abs(places - line.at((nodes + 1.0) / 2.0)).max() <= STRAIGHT:
+    if np.abs(places - line.at((nodes + 1.0) / 2.0)).max() <= ON_LINE:
         return line
     return Series(np.linalg.solve(chebyshev.chebvander(nodes, count - 1), places))

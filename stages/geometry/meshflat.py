@@ -38,7 +38,6 @@ class MeshMap(ArrayValue):
     noise_mm: median of the standard deviations of the heights of vertices over the fits around them.
     kind: whether the lengths are those on the fitted surface or those of the chords.
     reached_mm: how far the last step moved a vertex at most.
-    energy_mm2: sum over the triangles of area times squared principal strains.
     """
 
     positions: Points2
@@ -47,7 +46,6 @@ class MeshMap(ArrayValue):
     noise_mm: float
     kind: Kind
     reached_mm: float
-    energy_mm2: float
 
 
 def flattened(mesh: Mesh, *, accuracy: float) -> MeshMap:
@@ -79,7 +77,7 @@ def at_rest(
     start = conformal(mesh.vertices, mesh.faces, laid(by_side(edges, lengths)))
     found = settled_with(rest, start, no_ties() if ties is None else ties, still=accuracy)
     left = strains(rest, found.positions)
-    return MeshMap(found.positions, lengths, left, noise_mm, kind, found.step_mm, found.energy_mm2)
+    return MeshMap(found.positions, lengths, left, noise_mm, kind, found.step_mm)
 
 
 def by_side(edges: Edges, lengths: Values) -> Array:

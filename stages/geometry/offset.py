@@ -22,7 +22,7 @@ import numpy as np
 
 from stages.errors import NoSolutionError
 from stages.geometry import bernstein, series
-from stages.geometry.arrays import Array, ArrayValue, Points3, Values, norm
+from stages.geometry.arrays import Array, ArrayValue, Points3, Values, float_rows, norm
 from stages.geometry.basis import bernstein_jet
 from stages.geometry.bernstein import Polynomial, Vector
 from stages.geometry.curves import Along, Bezier, Curve, RationalBezier, homogeneous
@@ -205,4 +205,4 @@ def _rounded(vector: Vector) -> Points3:
     rows = [bernstein.elevate(f, degree) for f in vector]
     exact = [[Fraction(f.scaled[i], f.denominator * comb(degree, i)) for f in rows] for i in range(degree + 1)]
     largest = max(abs(x) for point in exact for x in point)
-    return np.array([[float(x / largest) for x in point] for point in exact])
+    return float_rows([x / largest for x in point] for point in exact)

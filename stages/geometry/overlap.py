@@ -12,8 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from shapely import STRtree, box
 
-from stages.geometry.arcpath import ArcPath, along, chords, curvatures, distances, lengths, split, sweeps
-from stages.geometry.arrays import Array, Indices, Points2, Values, norm
+from stages.geometry import arcs
+from stages.geometry.arcpath import ArcPath, along, chords, curvatures, distances, lengths, sweeps
+from stages.geometry.arrays import Array, Indices, Numbers, Points2, Values, norm
+from stages.geometry.manypaths import Row, points_at, row
 
 QUARTER_BULGE = 0.41421356237309503
 """tan(pi / 8): longer arcs are divided into pieces of a quarter turn at most, none of which bends back on itself."""
@@ -35,9 +37,7 @@ class Overlap:
 
 def overlaps(paths: Sequence[ArcPath], *, apart: float, least: float) -> list[Overlap]:
     """Return the pairs of paths that run within `apart` mm of each other for more than `least` mm together."""
-    gentle = [split(path, max_bulge=QUARTER_BULGE) for path in paths]
-    loose = _loose(gentle)
-    owner = np.repeat(np.arange(len(gentle)), [lengths(path).size for path in gentle])
+    loose, owner = _loose(paths)
     start, end = chords(loose)
     first, second = near_pairs(start[::2], end[::2], loose.bulges[::2], apart)
     shared = _shared(loose, first, second, apart) if first.size else np.zeros(0)
@@ -48,11 +48,26 @@ def overlaps(paths: Sequence[ArcPath], *, apart: float, least: float) -> list[Ov
     return [Overlap(a, b, length) for (a, b), length in sorted(found.items()) if length > least]
 
 
-def _loose(paths: Sequence[ArcPath]) -> ArcPath:
-    """Return all pieces as the even pieces of one path; the odd ones, which lead from one to the next, mean nothing."""
-    ends = [np.stack(chords(path), axis=1).reshape(-1, 2) for path in paths]
-    bulges = [np.stack([path.bulges[: lengths(path).size], 0.0 * lengths(path)], axis=1).ravel() for path in paths]
-    return ArcPath(np.concatenate(ends), np.concatenate(bulges), closed=True)
+def _loose(paths: Sequence[ArcPath]) -> tuple[ArcPath, Numbers]:
+    """Return all pieces as the even pieces of one path, and the number of the path that each is from.
+
+    The odd pieces, which lead from one to the next, mean nothing.  Longer arcs than a quarter turn are divided.
+    """
+    every = row(paths)
+    sweep, most = arcs.sweeps(every.bulge), 4.0 * np.arctan(QUARTER_BULGE)
+    count = np.maximum(np.ceil(np.abs(sweep) / most - arcs.ROUNDING), 1.0).astype(np.int64)
+    piece = np.repeat(np.arange(count.size), count)
+    within = np.arange(piece.size) - np.repeat(np.cumsum(count) - count, count)
+    ends = [_at(every, piece, (within + far) / count[piece]) for far in (0.0, 1.0)]
+    bulge = np.where(count == 1, every.bulge, np.tan(sweep / (4.0 * count)))[piece]
+    bulges = np.stack([bulge, np.zeros_like(bulge)], axis=1).ravel()
+    return ArcPath(np.stack(ends, axis=1).reshape(-1, 2), bulges, closed=True), every.owner[piece]
+
+
+def _at(every: Row, piece: Indices, share: Values) -> Points2:
+    """Return the points at shares of the sweep of pieces; their ends as they are."""
+    first, last = (share == 0.0)[:, None], (share == 1.0)[:, None]
+    return np.where(first, every.start[piece], np.where(last, every.end[piece], points_at(every, piece, share)))
 
 
 def near_pairs(start: Array, end: Array, bulge: Array, apart: float) -> tuple[Indices, Indices]:

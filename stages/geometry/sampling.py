@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from stages.errors import NoSolutionError
@@ -42,8 +43,8 @@ VANISHED = 1e-9
 NEARBY = (1e-7, 1e-5, 1e-3)
 """How far inside to look, in t, for the direction at an end where the derivative vanishes or is infinite."""
 
-COARSE_NODES, FINE_NODES = 7, 10
-"""Gauss nodes to an interval: what three more change tells how exact both are."""
+RULES = legendre.leggauss(7), legendre.leggauss(10)
+"""Gauss's rules of 7 and of 10 nodes to an interval: what three more change tells how exact both are."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,12 +120,12 @@ def length_and_area(edges: Sequence[Resolved], *, accuracy: float) -> tuple[floa
 def _integrals(edge: Resolved, middle: Array) -> Array:
     """Return length and area swept about `middle`, by two rules, shape (2, 2); splines piece by piece."""
     breaks = np.union1d(edge.t, edge.curve.breaks) if isinstance(edge.curve, Spline | MappedEdge) else edge.t
-    return np.array([_gauss(edge.curve, breaks, nodes, middle) for nodes in (COARSE_NODES, FINE_NODES)])
+    return np.array([_gauss(edge.curve, breaks, rule, middle) for rule in RULES])
 
 
-def _gauss(edge: PlaneCurve, breaks: Values, nodes: int, middle: Array) -> Array:
-    """Return length and area by Gauss's rule with that many nodes between each two breaks, shape (2,)."""
-    x, w = np.polynomial.legendre.leggauss(nodes)
+def _gauss(edge: PlaneCurve, breaks: Values, rule: tuple[Array, Array], middle: Array) -> Array:
+    """Return length and area by Gauss's rule, its nodes and weights, between each two breaks, shape (2,)."""
+    x, w = rule
     half = np.diff(breaks) / 2.0
     t = (breaks[:-1] + half)[:, None] + half[:, None] * x
     weight = (half[:, None] * w).ravel()

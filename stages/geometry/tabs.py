@@ -6,6 +6,7 @@ spacing, none where nothing is within half of it, or where another gap is.  That
 fewest, then the one with the fewest on arcs, then the one that moves the furthest gap the least.
 """
 
+from bisect import bisect_left, insort
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -115,20 +116,24 @@ def _placed(row: Sequence[tuple[Near, Near]], long: float, wish: Wish) -> tuple[
     """
     step = long / wish.count
     middles, arcs, uneven = list[float](), 0, 0.0
+    taken = list[float]()
     for line, arc in row:
         at, away = line if line[1] <= step / 4.0 or line[1] <= arc[1] else arc
-        if away > step / 2.0 or _is_taken(at, middles, long, wish):
+        if away > step / 2.0 or _is_taken(at, taken, long, wish):
             continue
         middles.append(at)
+        insort(taken, at)
         arcs += (at, away) != line
         uneven = max(uneven, away)
     gone = wish.count - len(middles)
     return (gone, arcs, round(uneven, 6)), Gaps(tuple(middles), gone, uneven)
 
 
-def _is_taken(at: float, middles: Sequence[float], long: float, wish: Wish) -> bool:
-    """Return whether a gap would run into another, or leave next to nothing between them."""
-    apart = (abs(at - other) % long for other in middles)
+def _is_taken(at: float, taken: Sequence[float], long: float, wish: Wish) -> bool:
+    """Return whether a gap would run into another, or leave next to nothing between them; taken: in rising order."""
+    place = bisect_left(taken, at)
+    beside = (taken[place - 1], taken[place % len(taken)]) if taken else ()
+    apart = (abs(at - other) for other in beside)
     return any(min(away, long - away) < wish.gap_mm + wish.least_mm for away in apart)
 
 

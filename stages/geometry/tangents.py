@@ -12,7 +12,7 @@ from fractions import Fraction
 import numpy as np
 
 from stages.geometry import series
-from stages.geometry.arrays import EPS, Array, ArrayValue, Matrix, Values, Vector3, dot, norm, unit
+from stages.geometry.arrays import EPS, Array, ArrayValue, Matrix, Values, Vector3, dot, float_rows, floats, norm, unit
 from stages.geometry.curves import (
     Bezier,
     Circular,
@@ -42,8 +42,8 @@ class UnitTangent(ArrayValue):
 
     def image(self, matrix: Sequence[Sequence[Fraction]], shift: Sequence[Fraction]) -> Curve:
         """Return matrix @ curve + shift."""
-        m = np.array([[float(x) for x in row] for row in matrix])
-        return UnitTangent(self.curve, m @ self.matrix, m @ self.shift + np.array([float(x) for x in shift]))
+        m = float_rows(matrix)
+        return UnitTangent(self.curve, m @ self.matrix, m @ self.shift + floats(shift))
 
     def part(self, low: Fraction, high: Fraction) -> Curve:
         """Return the part over [low, high]; run backwards, the curve beneath has the opposite tangent."""

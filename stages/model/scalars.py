@@ -7,10 +7,6 @@ that is developable in the decimals of its job file is exactly developable in th
 from collections.abc import Iterable
 from fractions import Fraction
 
-import numpy as np
-
-from stages.geometry.arrays import Array
-
 
 class Length(Fraction):
     """A length in mm."""
@@ -77,11 +73,6 @@ Direction = tuple[Number, Number, Number]
 
 RIGHT_ANGLE, HALF_TURN, FULL_TURN = 90, 180, 360
 """Angles in degrees, whole and so exact."""
-
-
-def floats(values: Iterable[Fraction]) -> Array:
-    """Return the values as float64, each rounded once, shape (n,)."""
-    return np.array([float(value) for value in values])
 
 
 def is_zero(vector: Iterable[Fraction]) -> bool:

@@ -28,7 +28,7 @@ def turned_over(pattern: FlatPattern, motion: Rigid2) -> bool:
     return motion.mirrored and not pattern.pair
 
 
-def seen_from_below(layer: StrokeLayer) -> StrokeLayer:
+def seen_from_below(layer: str) -> str:
     """Return the layer of a mark on a copy that is turned over: what bends up bends down then."""
     if layer == "BEND_UP":
         return "BEND_DOWN"

@@ -5,7 +5,8 @@ bytes.  Otherwise an engine searches for a better one within the time limit.  Wh
 certifier, which looks at the exact contours; what has not is discarded.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from math import isfinite
 from typing import NamedTuple
 
 from stages.model.pattern import FlatPattern
@@ -20,7 +21,7 @@ from stages.nest.layout import as_nesting
 from stages.nest.legal import certify, passed
 from stages.nest.lots import EMPTY, task_of
 from stages.nest.raster import fill_raster
-from stages.nest.search import Engine, search_plans
+from stages.nest.search import MANY, Engine, copies_of, search_plans
 from stages.nest.sheets import Plan, Task, first_plans
 
 __all__ = ["as_nesting", "needs_search", "nest", "nest_with"]
@@ -54,7 +55,7 @@ def nest_with(
         return _outcome(None, (), found)
     task = task_of([oriented(pattern) for pattern in patterns], stock, options, fixed or EMPTY)
     wanted = [one for one in task.kinds if task.counts[one.blank.part]]
-    refused = [_too_large(one, task.beds) for one in wanted if not any(map(one.on, task.beds))]
+    refused = [_too_large(one, task.beds, "fits no sheet") for one in wanted if not any(map(one.on, task.beds))]
     if refused:
         return _outcome(None, (), [*found, *refused])
     # where every copy is given there is nothing to choose, and nothing to search
@@ -73,12 +74,20 @@ def needs_search(plan: Plan) -> bool:
 
 
 def _searched(task: Task, first: Plan, time_limit_s: float, engine: Engine) -> tuple[list[Plan], list[Finding]]:
-    """Return what the search found, and what the engine failed with or that it was interrupted."""
+    """Return what the search found, and what the engine failed with, that it was interrupted, or not made at all."""
     plans = search_plans(task, first, time_limit_s, engine)
-    findings = [Finding("engine-failed", f"the nesting engine failed: {why}") for why in engine.failures]
+    failed = (Finding("engine-failed", f"the nesting engine failed: {why}") for why in engine.failures)
+    findings = [*_not_searched(copies_of(task)), *failed]
     if engine.interrupted:
         findings.append(Finding("interrupted", "the search was interrupted: the best layout so far is used"))
     return plans, findings
+
+
+def _not_searched(copies: int) -> Iterator[Finding]:
+    """Yield that there are too many copies for a search."""
+    if copies > MANY:
+        message = f"{copies} copies are more than the search takes on, {MANY}: the first placement is used"
+        yield Finding("not-searched", message)
 
 
 class Rules(NamedTuple):
@@ -116,13 +125,14 @@ def _left_over(plan: Plan, task: Task) -> list[Finding]:
     """Return which parts find no place even on an empty sheet, or else that the stock is used up."""
     left = [one for one in task.kinds if plan.left.get(one.blank.part)]
     hopeless = [one for one in left if not any(fill_raster(bed, [(1, one.on(bed))]) for bed in task.beds)]
-    return [_too_large(one, task.beds) for one in hopeless] or [_exhausted(plan, left, task.beds)]
+    found = "found no place even on an empty sheet"
+    return [_too_large(one, task.beds, found) for one in hopeless] or [_exhausted(plan, left, task.beds)]
 
 
-def _too_large(one: Kind, beds: Sequence[Bed]) -> Finding:
-    """Return that a part fits no sheet in any angle it may take."""
+def _too_large(one: Kind, beds: Sequence[Bed], why: str) -> Finding:
+    """Return that a part fits no sheet in any angle it may take, or was not seen to."""
     part = one.blank.pattern.part
-    message = f"part '{part}', {_size(one)} mm, fits no sheet, {_turns(one)}; the largest has room for {_room(beds)} mm"
+    message = f"part '{part}', {_size(one)} mm, {why}, {_turns(one)}; the largest has room for {_room(beds)} mm"
     return Finding("part-too-large", message, fatal=True, where={"part": part})
 
 
@@ -151,8 +161,8 @@ def _size(one: Kind) -> str:
 
 
 def _room(beds: Sequence[Bed]) -> str:
-    """Return the size of the largest sheet between its edge gaps; an outline by its box."""
+    """Return the size of the largest sheet between its edge gaps; an outline by its box, a roll of any length."""
     sheets = [one.sheet for one in beds]
-    sizes = [(one.width_mm - 2.0 * one.edge_gap_mm, one.height_mm - 2.0 * one.edge_gap_mm) for one in sheets]
-    width, height = max(sizes, key=lambda size: size[0] * size[1], default=(0.0, 0.0))
-    return f"{width:.6g} x {height:.6g}"
+    sizes = [[max(size - 2.0 * one.edge_gap_mm, 0.0) for size in (one.width_mm, one.height_mm)] for one in sheets]
+    width, height = max(sizes, key=lambda size: size[0] * size[1], default=[0.0, 0.0])
+    return f"{f'{width:.6g}' if isfinite(width) else 'any length'} x {height:.6g}"

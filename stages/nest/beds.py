@@ -47,10 +47,11 @@ METRE_MM = 1000.0
 def beds(patterns: Sequence[FlatPattern], stock: Sequence[Sheet], options: NestOptions) -> list[Bed]:
     """Return the room on every piece of stock, in its order.
 
-    Remnants are free.  Where all other stock has a price, that is what it counts; otherwise every new sheet counts 1.
+    Remnants are free.  Where all other stock has a price, that is what it counts; otherwise, or if all prices are 0,
+    every new sheet counts 1.
     """
-    new = [sheet for sheet in stock if sheet.kind != "remnant"]
-    priced = bool(new) and all(sheet.price is not None for sheet in new)
+    prices = [sheet.price for sheet in stock if sheet.kind != "remnant"]
+    priced = None not in prices and any(prices)
     length = roll_length(patterns, options)
     return [costed(bed(number, one, options, length), priced=priced) for number, one in enumerate(stock)]
 

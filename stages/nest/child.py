@@ -24,6 +24,9 @@ POLL_S = 0.1
 READY_S = 240.0
 """How long the engine may take to be ready: once on a machine it is compiled, for some 20 s of a free core."""
 
+FAR_MM = 1e9
+"""No item lies so far from the origin of its bin; what does would upset whoever measures it."""
+
 GRACE_S = 0.5
 """What a search may take beyond its seconds before it is killed; it has told its layouts by then."""
 
@@ -47,13 +50,14 @@ def solve(request: Request, told: Told, command: Sequence[str] = ENGINE, ready_s
 
     Raises EngineError if it cannot be started.
     """
+    line = request_line(request)
     try:
         child = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, bufsize=0
         )
     except OSError as error:
         raise EngineError(f"it could not be started: {error}") from error
-    talk = threading.Thread(target=_talk, args=(child, request_line(request), told), daemon=True)
+    talk = threading.Thread(target=_talk, args=(child, line, told), daemon=True)
     start = monotonic()
     try:
         talk.start()
@@ -118,11 +122,23 @@ def layouts(told: Told, request: Request) -> list[tuple[Spot, ...]]:
     return found
 
 
+def last_words(told: Told) -> str | None:
+    """Return what the engine ended with if it failed, whatever layouts it had told before."""
+    try:
+        read = json.loads(told.lines[-1]) if told.lines else None
+    except ValueError:
+        return None
+    return str(read["error"]) if isinstance(read, dict) and "error" in read else None
+
+
 def _sensible(spots: Sequence[Spot], request: Request) -> bool:
-    """Return whether every item is placed, as one of its kinds, in a bin that there is and where it may lie."""
+    """Return whether every item is placed, as one of its kinds, in a bin that there is, and where it may lie in it."""
     kinds, items, bins = request.problem.kinds, request.problem.items, request.problem.bins
     return len(spots) == len(items) and all(
-        0 <= spot.bin < len(bins) and spot.kind in (item.kind, item.other) and _may_lie(kinds[spot.kind], spot.bin)
+        0 <= spot.bin < len(bins)
+        and spot.kind in (item.kind, item.other)
+        and _may_lie(kinds[spot.kind], spot.bin)
+        and max(abs(spot.x), abs(spot.y)) <= FAR_MM
         for spot, item in zip(spots, items, strict=True)
     )
 

@@ -6,13 +6,11 @@ Both depend on where the parts lie and on nothing else, so a stored layout comes
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from stages.geometry.arcpath import bounds, transform
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric
-from stages.model.sheet import Nesting, NestOptions, SheetLayout
+from stages.model.sheet import Nesting, NestOptions
 from stages.nest.commonlines import aligned, common_line
-from stages.nest.layout import offcut
-from stages.nest.legal import utilisation
+from stages.nest.layout import as_used
 from stages.nest.order import in_cut_order
 
 
@@ -42,14 +40,6 @@ def _with_common_lines(
     """Return a nest with neighbours moved together."""
     held = {(one.part, one.copy) for layout in (fixed.layouts if fixed else ()) for one in layout.placements}
     closer = aligned(nesting, patterns, options, held)
-    layouts = [_measured(layout, patterns, options) for layout in closer.layouts]
+    layouts = [as_used(layout, patterns, options) for layout in closer.layouts]
     made, metrics = in_cut_order(replace(closer, layouts=tuple(layouts)), patterns)
     return Finished(made, (*metrics, common_line(made, patterns, options)))
-
-
-def _measured(layout: SheetLayout, patterns: Sequence[FlatPattern], options: NestOptions) -> SheetLayout:
-    """Return a layout with how much of the sheet is used and what is left over, as its parts lie now."""
-    by_name = {pattern.part: pattern for pattern in patterns}
-    boxes = [bounds(transform(by_name[one.part].outer.path, one.motion)) for one in layout.placements]
-    share = utilisation(Nesting((layout,)), by_name)
-    return replace(layout, utilisation=share or 0.0, offcut=offcut(layout.sheet, boxes, options))

@@ -15,11 +15,12 @@ edge directions and by the solutions of D cos(angle - phase) = width on each arc
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from stages.geometry.arcpath import polygon
-from stages.geometry.arrays import Array, Points2, Values
+from stages.geometry.arrays import Array, Points2, Values, locked
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.sheet import NestOptions
 from stages.nest.blank import Bed, Blank, Turned, extent, fits, fits_turned, turned
@@ -35,6 +36,12 @@ SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 FINE_CHORD_MM = 1e-3
 """Chord error of the hull in the test for the last resort: what the exact box may gain is less than this."""
+
+HULL_MORE_MM = 3.0 * FINE_CHORD_MM
+"""The hull is wider than the exact box by less than this: a chord error on either side, and rounding."""
+
+KEPT = 8
+"""Hulls of the parts asked for last: every stock asks for the same one."""
 
 ALIKE = 1e-6
 """Rectangles whose areas differ by less, relative to the larger, are the same: the smaller angle is taken."""
@@ -153,14 +160,14 @@ def steps(angle_deg: float, step_deg: float) -> tuple[float, ...]:
     return tuple((angle_deg + number * step_deg) % FULL_DEG for number in range(round(FULL_DEG / step_deg)))
 
 
+@lru_cache(maxsize=KEPT)
 def hull(blank: Blank) -> Points2:
     """Return the corners of the convex hull of a part, mirrored if its blank is, as one counter-clockwise loop."""
     from scipy.spatial import ConvexHull
 
     flat = polygon(blank.pattern.outer.path, accuracy=FINE_CHORD_MM, outside=True)
     points = apply(Rigid2(mirrored=blank.mirrored), flat)
-    corners: Points2 = points[ConvexHull(points - points.mean(axis=0)).vertices]
-    return corners
+    return locked(points[ConvexHull(points - points.mean(axis=0)).vertices])
 
 
 def tight_angle(corners: Points2) -> float:
@@ -173,10 +180,24 @@ def tight_angle(corners: Points2) -> float:
 
 def widths(corners: Points2, angle_deg: Array) -> Array:
     """Return how wide, along x, the corners are after each turn; mm."""
-    turn = np.radians(angle_deg)
-    x = corners[:, 0, None] * np.cos(turn) - corners[:, 1, None] * np.sin(turn)
-    extent: Array = x.max(axis=0) - x.min(axis=0)
+    turn, span = np.radians(angle_deg), _spans(corners, angle_deg)
+    extent: Array = span[:, 0] * np.cos(turn) - span[:, 1] * np.sin(turn)
     return extent
+
+
+def _spans(corners: Points2, angle_deg: Array) -> Array:
+    """Return the way from the leftmost to the rightmost corner after each turn, in the frame before it; mm.
+
+    Along a convex loop the corner that is furthest in a direction lies where the edges turn past the normal to it.
+    """
+    edge = _directions(corners) % FULL_DEG
+    order = np.argsort(edge)
+    right, left = (
+        corners[order[np.searchsorted(edge[order], (normal - angle_deg) % FULL_DEG) % order.size]]
+        for normal in (QUARTER_DEG, -QUARTER_DEG)
+    )
+    span: Array = right - left
+    return span
 
 
 def fitting_angles(blank: Blank, bed: Bed, turns: Turns = ANY) -> tuple[float, ...]:
@@ -186,6 +207,8 @@ def fitting_angles(blank: Blank, bed: Bed, turns: Turns = ANY) -> tuple[float, .
     wanted = (bed.width_mm - grow, bed.height_mm - grow)
     exact = np.concatenate(list(_critical_angles(corners, wanted)))
     candidates = np.unique(np.concatenate([exact, exact - INSIDE_DEG, exact + INSIDE_DEG]))
+    wide, high = widths(corners, candidates), widths(corners, candidates + QUARTER_DEG)
+    candidates = candidates[(wide <= wanted[0] + HULL_MORE_MM) & (high <= wanted[1] + HULL_MORE_MM)]
     both = (tuple(one for one in _half_turns(angle) if contains(turns, one)) for angle in candidates.tolist())
     fitting = [ways for ways in both if ways and fits_turned(blank, ways[0], bed)]
     return min(fitting, key=lambda ways: extent(blank, ways[0])[3], default=())
@@ -216,9 +239,7 @@ def _critical_angles(corners: Points2, wanted: tuple[float, float]) -> Iterator[
 
 def _solutions(corners: Points2, middle_deg: Array, size: float) -> tuple[Array, Array]:
     """Return the two angles nearest each middle at which the width of its sine arc is `size`; NaN where none is."""
-    turn = np.radians(middle_deg)
-    x = corners[:, 0, None] * np.cos(turn) - corners[:, 1, None] * np.sin(turn)
-    span = corners[np.argmax(x, axis=0)] - corners[np.argmin(x, axis=0)]
+    turn, span = np.radians(middle_deg), _spans(corners, middle_deg)
     length, phase = np.hypot(span[:, 0], span[:, 1]), np.arctan2(span[:, 1], span[:, 0])
     with np.errstate(invalid="ignore"):
         away = np.arccos(size / length)

@@ -16,7 +16,7 @@ import numpy as np
 from shapely import Polygon
 
 from stages.geometry.arcpath import ArcPath, area, backwards, joint_turns, length, lengths, polygon
-from stages.geometry.clearance import clearance
+from stages.geometry.clearance import joined, nearest
 from stages.geometry.cover import doubled
 from stages.geometry.overlap import overlaps
 from stages.geometry.simple import certainly_simple
@@ -24,7 +24,7 @@ from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.legal_laid import fatal
-from stages.nest.legal_region import Region, boxes_meet, overlap_mm2, region, within
+from stages.nest.legal_region import Region, meeting, overlap_mm2, region, within
 from stages.nest.turns import allowed
 
 NO_AREA = 1e-9
@@ -124,6 +124,8 @@ def _sheet(sheet: Sheet) -> Iterator[Finding]:
         yield wrong(f"the quantity is {sheet.quantity}")
     if sheet.grain_deg is not None and not isfinite(sheet.grain_deg):
         yield wrong(f"the grain is {sheet.grain_deg:g} deg")
+    if sheet.price is not None and not (isfinite(sheet.price) and sheet.price >= 0.0):
+        yield wrong(f"the price is {sheet.price:g}, it must be 0 or more")
     outlines = {
         "the outline": [sheet.outline] if sheet.outline else [],
         "defect": sheet.defects,
@@ -204,18 +206,23 @@ def _holes(pattern: FlatPattern) -> Iterator[tuple[str, str]]:
     """Yield holes that leave the outline or run into each other; one that merely touches is not in the way here."""
     outline = region(pattern.outer.path)
     holes = [region(contour.path) for contour in pattern.inner]
-    for number, hole in enumerate(holes, start=1):
-        if not within(hole, outline, _gap_between(hole, outline)):
+    for number, (hole, gap) in enumerate(zip(holes, _gaps(holes, outline), strict=True), start=1):
+        if not within(hole, outline, gap):
             yield "hole-outside", f"hole {number} is not within the outline"
-    for number, hole in enumerate(holes, start=1):
-        for other, before in enumerate(holes[: number - 1], start=1):
-            if boxes_meet(hole, before) and overlap_mm2(hole, before, _gap_between(hole, before)) > 0.0:
-                yield "hole-overlap", f"holes {other} and {number} run into each other"
+    for number, other in sorted((j, i) for i, j in meeting(holes)):
+        hole, before = holes[number], holes[other]
+        if overlap_mm2(hole, before, *_gaps([hole], before)) > 0.0:
+            yield "hole-overlap", f"holes {other + 1} and {number + 1} run into each other"
 
 
-def _gap_between(a: Region, b: Region) -> float:
-    """Return how far contours are apart, mm, as far as it matters."""
-    return min(clearance(a.outline, b.outline, within=APART_MM), APART_MM)
+def _gaps(some: Sequence[Region], other: Region) -> list[float]:
+    """Return how far the contours of regions are from those of another, mm, as far as it matters."""
+    if not some:
+        return []
+    outlines = [one.outline for one in some]
+    owner = np.repeat(np.arange(len(some)), [outline.bulge.size for outline in outlines])
+    found = nearest(joined(outlines), owner, other.outline, within=APART_MM)
+    return [found.get(number, APART_MM) for number in range(len(some))]
 
 
 def _gap(stock: Sequence[Sheet], options: NestOptions) -> Iterator[Finding]:

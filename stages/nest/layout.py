@@ -2,15 +2,15 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import count
 
-from stages.geometry import arcpath
-from stages.geometry.arcpath import bounds
+from stages.geometry.arcpath import bounds, transform
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, NestOptions, Placement, Rectangle, Sheet, SheetLayout
 from stages.nest.blank import Bed, Placed
 from stages.nest.legal import utilisation
-from stages.nest.sheets import Filled, Plan
+from stages.nest.sheets import Plan
 
 Numbers = dict[tuple[str, bool], Iterator[int]]
 """The numbers that are still free, for each part and, of a pair, for each hand."""
@@ -30,7 +30,8 @@ def as_nesting(plan: Plan, patterns: Sequence[FlatPattern], options: NestOptions
         sheets[filled.bed.sheet.id] += 1
         placements = [_placement(placed, filled.bed, numbers) for placed in filled.placed]
         placements.sort(key=lambda one: (one.part, one.copy))
-        layouts.append(_layout(filled, sheets[filled.bed.sheet.id], tuple(placements), patterns, options))
+        bare = SheetLayout(filled.bed.sheet, sheets[filled.bed.sheet.id], tuple(placements), 0.0)
+        layouts.append(as_used(bare, patterns, options))
     return Nesting(tuple(layouts))
 
 
@@ -59,18 +60,12 @@ def _placement(placed: Placed, bed: Bed, numbers: Numbers) -> Placement:
     return Placement(blank.pattern.part, next(numbers[blank.pattern.part, blank.mirrored]), placed.motion(bed))
 
 
-def _layout(
-    filled: Filled,
-    index: int,
-    placements: tuple[Placement, ...],
-    patterns: Sequence[FlatPattern],
-    options: NestOptions,
-) -> SheetLayout:
+def as_used(layout: SheetLayout, patterns: Sequence[FlatPattern], options: NestOptions) -> SheetLayout:
+    """Return a layout with how much of the sheet is used and what is left over, as its parts lie."""
     by_name = {pattern.part: pattern for pattern in patterns}
-    bare = SheetLayout(filled.bed.sheet, index, placements, 0.0)
-    share = utilisation(Nesting((bare,)), by_name)
-    boxes = [bounds(arcpath.transform(by_name[one.part].outer.path, one.motion)) for one in placements]
-    return SheetLayout(bare.sheet, index, placements, share or 0.0, offcut(bare.sheet, boxes, options))
+    boxes = [bounds(transform(by_name[one.part].outer.path, one.motion)) for one in layout.placements]
+    share = utilisation(Nesting((layout,)), by_name)
+    return replace(layout, utilisation=share or 0.0, offcut=offcut(layout.sheet, boxes, options))
 
 
 def offcut(sheet: Sheet, boxes: Sequence[tuple[float, float, float, float]], options: NestOptions) -> Rectangle | None:
@@ -84,5 +79,6 @@ def offcut(sheet: Sheet, boxes: Sequence[tuple[float, float, float, float]], opt
     top = max((box[3] for box in boxes), default=-options.gap_mm) + options.gap_mm
     beside = Rectangle(right, 0.0, sheet.width_mm - right, sheet.height_mm)
     above = Rectangle(0.0, top, sheet.width_mm, sheet.height_mm - top)
-    worth = [one for one in (beside, above) if min(one.width_mm, one.height_mm) >= max(options.offcut_min_mm, 0.0)]
+    sides = [(min(one.width_mm, one.height_mm), one) for one in (beside, above)]
+    worth = [one for side, one in sides if side > 0.0 and side >= options.offcut_min_mm]
     return max(worth, key=lambda one: one.width_mm * one.height_mm, default=None)

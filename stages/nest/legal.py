@@ -7,27 +7,31 @@ and at those read back from the cut files (`certify_contours`).  One module a ru
 - `legal_gaps`, `legal_common`: the smallest gap between two parts, exact; parts that cross or lie in one another;
 - `legal_ground`: on the sheet, away from its edge and its defects, exact; out of zones that are too poor.
 
-`rigid_error_mm` compares the distances between the vertices of the placed contour with those of the part.
+`rigid_error_mm` compares the distances between the vertices of the placed contour with those of the part; of contours
+with more than `MOST_PAIRS` pairs of them those between every one and some, and it is called sampled.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial.distance import pdist
+from scipy.spatial.distance import cdist
 
 from stages.geometry.arcpath import transform
-from stages.geometry.arrays import Values
+from stages.geometry.arrays import Matrix, Points2
 from stages.model.pattern import FlatPattern
-from stages.model.report import Finding, Metric
+from stages.model.report import Evidence, Finding, Metric
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet
 from stages.nest.legal_copies import ANGLE_TOLERANCE_DEG, astray, miscounted, misturned, moved, off_grain_deg, overdrawn
 from stages.nest.legal_gaps import between_copies
 from stages.nest.legal_ground import edge_distances, edge_findings, utilisation, utilised, zone_finding, zone_overlaps
-from stages.nest.legal_laid import Spread, lay, spread
+from stages.nest.legal_laid import Spread, fatal, lay, spread
 from stages.nest.legal_region import GAP_TOLERANCE_MM
 
 __all__ = ["ANGLE_TOLERANCE_DEG", "GAP_TOLERANCE_MM", "certify", "measured", "passed", "utilisation"]
+
+MOST_PAIRS = 1_000_000
+"""Of vertices of a contour, whose distances are compared: all pairs of 20 000 would fill gigabytes."""
 
 
 def certify(
@@ -45,6 +49,8 @@ def certify(
     findings = [*miscounted(nesting, patterns), *overdrawn(nesting, stock), *misturned(nesting, by_name, options)]
     findings += astray(nesting) if options.one_direction else []
     findings += moved(nesting, fixed) if fixed else []
+    rigid = _rigid_error(nesting, by_name)
+    findings += _not_rigid(rigid)
     sheets = [
         spread(layout, [lay(by_name[one.part], one) for one in layout.placements if one.part in by_name])
         for layout in nesting.layouts
@@ -54,7 +60,7 @@ def certify(
     metrics = (
         Metric("utilisation", share, "", evidence),
         *on_sheets,
-        Metric("rigid_error_mm", _rigid_error(nesting, by_name), "mm", "proved"),
+        rigid,
         *_grain(nesting, by_name),
     )
     return metrics, (*findings, *faults)
@@ -124,14 +130,35 @@ def _grain(nesting: Nesting, by_name: Mapping[str, FlatPattern]) -> tuple[Metric
     return (Metric("off_grain_deg", max(known), "deg", "proved"),) if known else ()
 
 
-def _rigid_error(nesting: Nesting, by_name: Mapping[str, FlatPattern]) -> float:
-    """Return the largest change of a distance between two vertices of an outer contour by its placement, in mm."""
-    before = {name: pdist(pattern.outer.path.vertices) for name, pattern in by_name.items()}
+def _rigid_error(nesting: Nesting, by_name: Mapping[str, FlatPattern]) -> Metric:
+    """Return the largest change of a distance between two vertices of an outer contour by its placement."""
     placed = [one for layout in nesting.layouts for one in layout.placements if one.part in by_name]
-    return max((_change(by_name[one.part], one, before[one.part]) for one in placed), default=0.0)
+    used = {one.part: by_name[one.part].outer.path.vertices for one in placed}
+    before = {name: _apart(vertices) for name, vertices in used.items()}
+    worst = max((_change(by_name[one.part], one, before[one.part]) for one in placed), default=0.0)
+    evidence: Evidence = "proved" if all(_every(vertices) == 1 for vertices in used.values()) else "sampled"
+    return Metric("rigid_error_mm", worst, "mm", evidence)
 
 
-def _change(pattern: FlatPattern, one: Placement, before: Values) -> float:
+def _change(pattern: FlatPattern, one: Placement, before: Matrix) -> float:
     """Return the same of one copy; a mirror runs the contour the other way."""
     vertices = transform(pattern.outer.path, one.motion).vertices[:: -1 if one.motion.mirrored else 1]
-    return float(np.abs(pdist(vertices) - before).max())
+    return float(np.abs(_apart(vertices) - before).max())
+
+
+def _apart(vertices: Points2) -> Matrix:
+    """Return the distances of all vertices to each, or to evenly chosen ones where they are many, mm."""
+    apart: Matrix = cdist(vertices, vertices[:: _every(vertices)])
+    return apart
+
+
+def _every(vertices: Points2) -> int:
+    """Return by how many vertices the ones to which distances are compared follow each other."""
+    return 1 + (len(vertices) ** 2 - 1) // MOST_PAIRS
+
+
+def _not_rigid(error: Metric) -> list[Finding]:
+    """Return that a placement has changed a part by more than rounding does."""
+    worst = float(error.value or 0.0)
+    message = f"placing a part has changed its size by {worst:.3g} mm"
+    return [] if worst <= GAP_TOLERANCE_MM else [fatal("rigid", message)]

@@ -1,7 +1,9 @@
 """The certifier on contours as they were read back from cut files: what will be cut, not what was meant.
 
-Which contour of a file belongs to which copy is found by its box, whatever the order in the file; every contour must be
-that of one copy, and every copy must be there.  After that only the contours read are looked at.
+Which contour of a file belongs to which copy is found by its box, whatever the order in the file; it must have the area
+of the placed one and go through its vertices and the middles of its arcs, as one that was turned or mirrored within its
+box does not.  Every contour must be that of one copy, and every copy must be there.  So angles and hands, on which
+`legal_copies` judges the placements, are those of the file.  After that only the contours read are looked at.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,16 +12,25 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from stages.geometry.arcpath import ArcPath, area, bounds, length, transform
+from stages.geometry.arcpath import ArcPath, along, area, bounds, length, transform
+from stages.geometry.arrays import Points2
+from stages.geometry.clearance import pieces
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric
 from stages.model.sheet import NestOptions, SheetLayout
 from stages.nest.legal import measured
 from stages.nest.legal_laid import Laid, fatal, paths_of, spread
-from stages.nest.legal_region import region
+from stages.nest.legal_region import least_distances, region
 
 SAME_MM = 1e-5
-"""How far a box may be off, and an area per length: contours put together from common lines are off by 2e-6."""
+"""How far a box and a place may be off, and an area per length: contours put together from common lines are off by
+2e-6."""
+
+MIDDLE = 0.5
+"""Of an arc, as a share of its sweep."""
+
+PAIRS = 1_000_000
+"""Distances of points to pieces worked out in one go: some 100 MB."""
 
 
 class ReadSheet(NamedTuple):
@@ -70,20 +81,47 @@ def _faults(sheet: ReadSheet, lost: Sequence[str], wanted: int) -> Iterator[Find
 
 
 def _pairs(wanted: Sequence[ArcPath], read: Sequence[ArcPath]) -> list[int | None]:
-    """Return which contour read is which that is wanted, by box and area; None where there is none, or it is taken."""
+    """Return which contour read is which that is wanted; None where there is none that is not taken yet."""
     if not (wanted and read):
         return [None] * len(wanted)
     tree = cKDTree(np.array([bounds(path) for path in read]))
-    off, nearest = tree.query(np.array([bounds(path) for path in wanted]), p=np.inf)
+    near = tree.query_ball_point(np.array([bounds(path) for path in wanted]), SAME_MM, p=np.inf, return_sorted=True)
     taken: set[int] = set()
     found: list[int | None] = []
-    for path, away, at in zip(wanted, off.tolist(), nearest.tolist(), strict=True):
-        same = away <= SAME_MM and at not in taken and _alike(path, read[at])
-        found.append(at if same else None)
-        taken |= {at} if same else set()
+    for path, places in zip(wanted, near, strict=True):
+        at = next((place for place in places if place not in taken and _alike(path, read[place])), None)
+        found.append(at)
+        taken |= set() if at is None else {at}
     return found
 
 
-def _alike(a: ArcPath, b: ArcPath) -> bool:
-    """Return whether two contours enclose the same area, whichever way round they run."""
-    return abs(abs(area(a)) - abs(area(b))) <= SAME_MM * length(a)
+def _alike(wanted: ArcPath, read: ArcPath) -> bool:
+    """Return whether contours of one box enclose the same area, either way round, and the one read misses no place."""
+    if _as_drawn(wanted, read):
+        return True
+    return abs(abs(area(wanted)) - abs(area(read))) <= SAME_MM * length(wanted) and _goes_through(read, _marks(wanted))
+
+
+def _as_drawn(wanted: ArcPath, read: ArcPath) -> bool:
+    """Return whether contours have the same vertices, one by one, and bulges that move no point of an arc by more."""
+    if wanted.bulges.size != read.bulges.size:
+        return False
+    bent = np.abs(wanted.bulges - read.bulges).max() * np.ptp(wanted.vertices, axis=0).sum()
+    return bool(max(np.abs(wanted.vertices - read.vertices).max(), bent) <= SAME_MM)
+
+
+def _marks(path: ArcPath) -> Points2:
+    """Return the vertices of a contour, and the middles of its arcs."""
+    arcs = np.flatnonzero(path.bulges)
+    return np.concatenate([path.vertices, along(path, arcs, np.full(arcs.size, MIDDLE))])
+
+
+def _goes_through(path: ArcPath, points: Points2) -> bool:
+    """Return whether a contour goes through points; only those that are not at marks of it are measured."""
+    off, _ = cKDTree(_marks(path)).query(points)
+    far, some = points[off > SAME_MM], pieces(path)
+    block = max(PAIRS // some.bulge.size, 1)
+    return all(
+        bool((least_distances(far[start : start + block], some) <= SAME_MM).all())
+        for start in range(0, len(far), block)
+    )

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from shapely import STRtree, box
 
 from stages.geometry.clearance import clearances
 from stages.model.report import Finding
@@ -16,7 +15,7 @@ from stages.model.sheet import NestOptions
 from stages.nest.legal_common import Gaps, without_common_lines
 from stages.nest.legal_ground import REACH_GROWTH, REACH_MM
 from stages.nest.legal_laid import Ground, Laid, Spread, fatal
-from stages.nest.legal_region import GAP_TOLERANCE_MM, overlap_mm2
+from stages.nest.legal_region import GAP_TOLERANCE_MM, meeting, overlap_mm2
 
 
 class Between(NamedTuple):
@@ -40,7 +39,7 @@ def between_copies(spread: Spread, options: NestOptions) -> Between:
     common = min((every[pair] for pair in every if asked[pair] != every[pair]), default=np.inf)
     overlaps = {
         (i, j): area
-        for i, j in _boxes_meet(laid)
+        for i, j in meeting([one.region for one in laid])
         if (area := overlap_mm2(laid[i].region, laid[j].region, every.get((i, j), options.gap_mm + REACH_MM))) > 0.0
     }
     findings = [*_too_near(spread.ground, laid, asked, options), *_overlapping(spread.ground, laid, overlaps)]
@@ -79,10 +78,3 @@ def _overlapping(ground: Ground, laid: Sequence[Laid], overlaps: Gaps) -> list[F
         )
         for (i, j), area in overlaps.items()
     ]
-
-
-def _boxes_meet(laid: Sequence[Laid]) -> list[tuple[int, int]]:
-    """Return the pairs whose boxes meet."""
-    frames = [box(*one.region.box) for one in laid]
-    first, second = STRtree(frames).query(frames, predicate="intersects")
-    return sorted((i, j) for i, j in zip(first.tolist(), second.tolist(), strict=True) if i < j)

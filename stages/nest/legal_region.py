@@ -4,10 +4,12 @@ Regions whose contours are apart overlap only where a contour of one lies within
 tells.  Where contours touch or cross, each region in turn is shrunk by `GAP_TOLERANCE_MM`: they overlap if its contour
 then still meets the other region.  So regions that touch do not overlap, and whatever reaches further into another
 does, however small its area.  A region lies within another if its contour does not reach that of the other, grown by as
-much.  Only the area of an overlap that is certain is measured on polygons.
+much, nor its contour shrunk by as much that of the other as it is.  Only the area of an overlap that is certain is
+measured on polygons.
 
 A shrunk or grown region is known by its pieces alone, each moved along its normals and cut off at the bisectors of
-corners.
+corners.  Where they move apart at a corner they leave a gap through which what is aligned with the corner slips: so two
+regions are always asked both ways.
 """
 
 from collections.abc import Sequence
@@ -15,7 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from shapely import Polygon
+from shapely import Polygon, STRtree, box
 
 from stages.geometry.arcpath import (
     ArcPath,
@@ -29,7 +31,7 @@ from stages.geometry.arcpath import (
     polygon,
     sweeps,
 )
-from stages.geometry.arrays import Array, Mask, Points2, Vector2
+from stages.geometry.arrays import Array, Mask, Points2, Values, Vector2
 from stages.geometry.clearance import Pieces, between, clearance, joined, pieces, point_distances
 from stages.geometry.enclosed import inside
 
@@ -38,6 +40,9 @@ GAP_TOLERANCE_MM = 1e-6
 
 CONTACT_MM = 1e-10
 """Contours nearer than this touch: it is their rounding at 10 m, squared distances included."""
+
+NO_PIECE_MM = 1e-8
+"""A shorter piece, such as between vertices that are one but for rounding, has no direction that means anything."""
 
 ASIDE_MOST_MM = 1.0
 ASIDE = (0.5403, 0.8415)
@@ -95,13 +100,24 @@ def within(a: Region, b: Region, gap_mm: float) -> bool:
     """Return whether a region lies in another that has no holes, given how far apart the contours are."""
     if gap_mm > CONTACT_MM:
         return bool(holds(b, _aside(a, gap_mm)).all())
-    return clearance(a.outline, grown(b), within=0.0) > 0.0 and bool(holds(b, _deep_points(a, b)).all())
+    return (
+        clearance(a.outline, grown(b), within=0.0) > 0.0
+        and clearance(shrunk(a), b.outline, within=0.0) > 0.0
+        and bool(holds(b, _deep_points(a, b)).all())
+    )
 
 
 def boxes_meet(a: Region, b: Region) -> bool:
     """Return whether the boxes of two regions meet."""
     (a_x, a_y, a_right, a_top), (b_x, b_y, b_right, b_top) = a.box, b.box
     return a_x <= b_right and b_x <= a_right and a_y <= b_top and b_y <= a_top
+
+
+def meeting(regions: Sequence[Region]) -> list[tuple[int, int]]:
+    """Return the pairs of regions, by number, whose boxes meet."""
+    frames = box(*np.array([one.box for one in regions]).reshape(-1, 4).T)
+    first, second = STRtree(frames).query(frames, predicate="intersects")
+    return sorted((i, j) for i, j in zip(first.tolist(), second.tolist(), strict=True) if i < j)
 
 
 def holds(some: Region, points: Points2) -> Mask:
@@ -154,18 +170,25 @@ ODD_SHARE = 0.3719
 
 def _furthest(points: Points2, to: Pieces) -> Vector2:
     """Return the point that is furthest from all pieces."""
+    furthest: Vector2 = points[int(np.argmax(least_distances(points, to)))]
+    return furthest
+
+
+def least_distances(points: Points2, to: Pieces) -> Values:
+    """Return the distance of each point to the nearest of all pieces, in mm."""
     count, many = points.shape[0], to.bulge.size
     every = point_distances(np.repeat(points, many, axis=0), to.take(np.tile(np.arange(many), count)))
-    furthest: Vector2 = points[int(np.argmax(every.reshape(count, many).min(axis=1)))]
-    return furthest
+    least: Values = every.reshape(count, many).min(axis=1)
+    return least
 
 
 SOME = 64
 """About so many points of a contour are looked at: any would do that is not within rounding of the other contour."""
 
 
-def _moved_in(path: ArcPath) -> Pieces:
+def _moved_in(contour: ArcPath) -> Pieces:
     """Return the pieces of a contour moved to the left, what is left of them between the bisectors of its corners."""
+    path = _directed(contour)
     whole = lengths(path)
     cut = GAP_TOLERANCE_MM * np.tan(np.clip(joint_turns(path), 0.0, SHARPEST) / 2.0)
     gone = np.full_like(whole, np.inf)
@@ -174,6 +197,12 @@ def _moved_in(path: ArcPath) -> Pieces:
     kept = np.flatnonzero(low < high)
     ends = [along(path, kept, f[kept]) + GAP_TOLERANCE_MM * _left(path, f)[kept] for f in (low, high)]
     return between(ends[0], ends[1], np.tan(sweeps(path)[kept] * (high - low)[kept] / 4.0))
+
+
+def _directed(path: ArcPath) -> ArcPath:
+    """Return a contour without the pieces that have no direction."""
+    kept = lengths(path) > NO_PIECE_MM
+    return path if kept.all() or not kept.any() else ArcPath(path.vertices[kept], path.bulges[kept], closed=True)
 
 
 def _left(path: ArcPath, fraction: Array) -> Array:

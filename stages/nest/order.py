@@ -104,7 +104,7 @@ def holders(patterns: Sequence[FlatPattern], placements: Sequence[Placement]) ->
         vertex = Point(apply(placed.motion, pattern.outer.path.vertices[:1])[0])
         near = tree.query(vertex, predicate="dwithin", distance=2.0 * BESIDE_MM).tolist()
         # only a hole larger than the part: then no two parts ever hold each other
-        around = [one for one in near if owners[one] != number and holes[one].area > area(pattern.outer.path)]
+        around = [one for one in near if owners[one] != number and holes[one].area > abs(area(pattern.outer.path))]
         found.append(owners[min(around, key=lambda one: holes[one].area)] if around else None)
     return found
 

@@ -16,7 +16,7 @@ from shapely import Polygon, affinity
 from stages.geometry.arrays import Vector2
 from stages.geometry.rigid import Rigid2, apply
 from stages.nest.blank import Bed, Blank, Placed, Region, turned
-from stages.nest.child import ENGINE, EngineError, Told, layouts, solve
+from stages.nest.child import ENGINE, EngineError, Told, last_words, layouts, solve
 from stages.nest.fit import Kind
 from stages.nest.separation import problem as given
 from stages.nest.separation.problem import NOWHERE, RECTANGLE, Item, Problem, Spot
@@ -84,18 +84,19 @@ def search_plans(task: Task, first: Plan, time_limit_s: float, engine: Engine) -
         engine.failures.append(str(error))
         return []
     try:
-        return [plan_of(spots, posed) for spots in layouts(told, posed.request)[:2]]
+        found = [plan_of(spots, posed) for spots in layouts(told, posed.request)[:2]]
     except EngineError as error:
         if not engine.interrupted:
             engine.failures.append(str(error))
         return []
+    engine.failures += filter(None, [last_words(told)])
+    return found
 
 
 def pose(task: Task, first: Plan, seconds: float, seed: int) -> Posed | None:
     """Return a task as a problem that starts from a plan; None if there is nothing to be searched."""
-    copies = sum(task.counts.values()) + sum(len(sheet.placed) for sheet in task.start)
     beds = bins_for(task, first)
-    if copies > MANY or not beds or not sum(task.counts.values()):
+    if copies_of(task) > MANY or not beds or not sum(task.counts.values()):
         return None
     hands = [hand_of(lot, blank) for lot in task.kinds for blank in lot.hands]
     number = {id(hand.blank): k for k, hand in enumerate(hands)}
@@ -113,6 +114,11 @@ def pose(task: Task, first: Plan, seconds: float, seed: int) -> Posed | None:
     return Posed(request, hands, beds, [kept for _, kept, _ in rows])
 
 
+def copies_of(task: Task) -> int:
+    """Return how many copies lie on the sheets in the end."""
+    return sum(task.counts.values()) + sum(len(sheet.placed) for sheet in task.start)
+
+
 def threads() -> int:
     """Return how many threads may search: the cores this process may use, or fewer where NUMBA_NUM_THREADS says so."""
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -126,7 +132,7 @@ def bins_for(task: Task, first: Plan) -> list[Bed]:
     used = {bed.stock: sum(one.stock == bed.stock for one in beds) for bed in task.beds}
     alone = len(task.beds) == 1 and not first.left
     for bed in task.beds:
-        if alone or (bed.sheet.is_roll and used[bed.stock]):
+        if alone or (bed.sheet.is_roll and used[bed.stock]) or min(bed.width_mm, bed.height_mm) <= 0.0:
             continue
         most = len(first.sheets) + 1 if bed.sheet.quantity is None else bed.sheet.quantity
         beds += [bed] * max(min(most, len(first.sheets) + 1) - used[bed.stock], 0)

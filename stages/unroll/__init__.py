@@ -87,7 +87,6 @@ def _laid(surface: RuledSurface, reached: Class) -> Laid:
     metrics = (
         Metric("flattening_error", found.reached, "", "sampled", FLATTENED),
         Metric("strain_uncertainty", found.strain_change),
-        Metric("strain_energy_mm2", found.energy, "mm2"),
     )
     return Laid(
         found.development, metrics, {"strain_field": as_detail(strain_field(surface, found.development, *FIELD))}
@@ -110,7 +109,8 @@ def _laid_flat(sheet: Neutral, by_warp: Class, tol: Tolerances) -> Outcome[FlatP
     rolls = scheduled(sheet.bent, surface, laid.development)
     strain = next(metric for metric in found.metrics if metric.name == "max_strain")
     measured = found.metrics if cut is None else with_trim(found.metrics, cut)
-    metrics = (*measured, covered, *laid.metrics, *sheet.metrics, *made.metrics, *rolls.metrics)
+    energy = (Metric("strain_energy_mm2", found.energy_mm2, "mm2"),) if by_warp != "exact" else ()
+    metrics = (*measured, covered, *laid.metrics, *energy, *sheet.metrics, *made.metrics, *rolls.metrics)
     metrics = (*metrics, *(metric for bend in bends for metric in bend.metrics))
     findings = (
         *division(surface),

@@ -15,8 +15,10 @@ from stages.model.material import Material
 from stages.model.sheetface import Layers
 from stages.model.surface import RuledSurface
 
-STRAIGHT = 1e-6
-"""A curvature below this share of 1/D bends the part by less than a micrometre per metre: flat."""
+SLIGHT = 1e-6
+"""A curvature at a ruling, or a jump of it, below this share of 1/D bends the part by less than a micrometre per metre.
+No press or roll is set by that: no radius is given there and no line drawn.  Whether the part bends at all is another
+question, with a finer answer (`stages.verify.bending`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +83,7 @@ def inside_radii(at: Array, sheet: Layers, u: int) -> Values:
 def radii_at(bent: Bent, places: Values) -> list[list[float | None]]:
     """Return the inside radii at both ends of the rulings at places, mm; None where the part is straight across."""
     at = bent.rates_at(places)
-    bends = np.abs(at[:, 0]) * bent.surface.size_mm > STRAIGHT * np.abs(at[:, 1:]).max(axis=1)
+    bends = np.abs(at[:, 0]) * bent.surface.size_mm > SLIGHT * np.abs(at[:, 1:]).max(axis=1)
     found: list[list[float | None]] = [[None, None] for _ in places]
     for k, *radii in zip(np.flatnonzero(bends), *(inside_radii(at[bends], bent.sheet, u) for u in (0, 1)), strict=True):
         found[k] = [float(radius) for radius in radii]

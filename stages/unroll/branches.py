@@ -18,7 +18,7 @@ from stages.geometry.plane import PlaneCurve
 from stages.geometry.ruled import RuledPatch, curvature
 from stages.model.surface import BranchedSurface, Hinge, RuledSurface, Trim
 from stages.model.tolerances import Tolerances
-from stages.unroll.bent import STRAIGHT
+from stages.unroll.bent import SLIGHT
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.spliced import Ring, spliced
 from stages.unroll.thickness import Neutral
@@ -133,7 +133,7 @@ def hinge_bend(surface: BranchedSurface, hinge: Hinge) -> float:
     """Return the curvature at a hinge on its more curved side, 1/mm, positive towards N; 0 where it does not jump."""
     sides = ((hinge.one, hinge.of_one), (hinge.other, hinge.of_other))
     here = [_curvature(surface.faces[face], edge) for face, edge in sides]
-    if abs(here[1] - here[0]) * surface.size_mm <= STRAIGHT:
+    if abs(here[1] - here[0]) * surface.size_mm <= SLIGHT:
         return 0.0
     return max(here, key=abs)
 

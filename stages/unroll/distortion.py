@@ -28,13 +28,17 @@ from stages.unroll.sides import Edges, flat_area, flat_edges, surface_figures
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """The metrics of the unroll, and the figures of both sides that are compared: edges in mm, areas in mm2."""
+    """The metrics of the unroll, and the figures of both sides that are compared: edges in mm, areas in mm2.
+
+    energy_mm2: the integral of the squares of both principal strains over the surface.
+    """
 
     metrics: tuple[Metric, ...]
     surface: Edges
     flat: Edges
     surface_area: float
     flat_area: float
+    energy_mm2: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +57,16 @@ def measure(surface: RuledSurface, development: Development, tol: Tolerances) ->
     sides = [_Tangents.at(patch, at.v) for patch, at in zip(surface.patches, nodes, strict=True)]
     lengths, surface_area = surface_figures(surface.patches)
     flat, area = flat_edges(nodes), flat_area(nodes)
+    strains = [_principal(side, at) for side, at in zip(sides, nodes, strict=True)]
     metrics = (
         _length_error(lengths, flat),
         Metric("area_error", abs(area - surface_area) / surface_area),
         _angle_error(surface, nodes),
         _at(surface, "metric_error", metric_error(sides, nodes)),
-        *_strains(surface, sides, nodes, tol),
+        *_strains(surface, strains, nodes, tol),
         Metric("flat_gap_mm", piece_gap(nodes), "mm", "sampled", tol.join_mm),
     )
-    return Distortion(metrics, lengths, flat, surface_area, area)
+    return Distortion(metrics, lengths, flat, surface_area, area, _energy(strains))
 
 
 def _at(surface: RuledSurface, name: str, extreme: Extreme, limit: float | None = None) -> Metric:
@@ -154,11 +159,15 @@ def _extreme(values: Array, at: PieceNodes, piece: int) -> Extreme:
     return Extreme(float(values[panel, node, side]), piece, float(at.v[panel, node]), float(ACROSS[side]))
 
 
+def _energy(found: "list[_Principal]") -> float:
+    """Return the integral of the squares of both principal strains, mm2."""
+    return sum(float(((strain.most**2 + strain.least**2) * strain.area).sum()) for strain in found)
+
+
 def _strains(
-    surface: RuledSurface, sides: list[_Tangents], nodes: list[PieceNodes], tol: Tolerances
+    surface: RuledSurface, found: "list[_Principal]", nodes: list[PieceNodes], tol: Tolerances
 ) -> tuple[Metric, ...]:
     """Return the extremes of strain with their places, and its root mean square over the area."""
-    found = [_principal(side, at) for side, at in zip(sides, nodes, strict=True)]
 
     def largest(values: list[Array]) -> Extreme:
         extremes = [_extreme(value, at, i) for i, (value, at) in enumerate(zip(values, nodes, strict=True))]
@@ -167,14 +176,13 @@ def _strains(
     extension = largest([strain.most for strain in found])
     compression = largest([-strain.least for strain in found])
     either = max(extension, compression, key=lambda extreme: extreme.value)
-    squares = sum(float(((strain.most**2 + strain.least**2) / 2.0 * strain.area).sum()) for strain in found)
     area = sum(float(strain.area.sum()) for strain in found)
     return (
         _at(surface, "max_strain", either, STRAIN_LIMIT[tol.accept]),
         _at(surface, "max_extension", extension),
         _at(surface, "max_compression", compression),
         _at(surface, "max_area_strain", largest([np.abs(_area_strain(strain)) for strain in found])),
-        Metric("strain_rms", float(np.sqrt(squares / area)) if area > 0.0 else None),
+        Metric("strain_rms", float(np.sqrt(_energy(found) / 2.0 / area)) if area > 0.0 else None),
     )
 
 

@@ -13,6 +13,7 @@ cut.  Not for a pattern that overlaps within 1/4096 of a patch (a fold), nor for
 trim): that part stays whole.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -134,14 +135,14 @@ def runs(strip: Strip, *, allowed: float) -> list[int]:
     As few as possible, the largest as small as possible; the whole in one where dividing does not help.
     """
     whole = float(strip.area[-1])
-    fewest = _greedy(strip, whole, allowed)
+    fewest = _greedy(strip, whole, allowed, STEPS * len(strip.pieces))
     if fewest is None or len(fewest) == 1:
         return [STEPS * len(strip.pieces)]
     low, high = 1.0 / len(fewest), 1.0
     best, share = fewest, low * (1.0 + EVEN)
     for _ in range(HALVINGS):
-        found = _greedy(strip, share * whole, allowed)
-        if found is not None and len(found) == len(fewest):
+        found = _greedy(strip, share * whole, allowed, len(fewest))
+        if found is not None:
             best, high = found, share
         else:
             low = share
@@ -153,31 +154,50 @@ EVEN = 4.0 / STEPS
 """What a share may be over an even one so that places in 1/4096 can meet it."""
 
 
-def _greedy(strip: Strip, most: float, allowed: float) -> list[int] | None:
-    """Return the runs of at most `most` mm2, each as long as can be; None where one would have no length."""
-    ends = [0]
+def _greedy(strip: Strip, most: float, allowed: float, count: int) -> list[int] | None:
+    """Return the runs of at most `most` mm2, each as long as can be; None for more than `count`, or an empty one."""
+    ends, likely = [0], 0
     while ends[-1] < STEPS * len(strip.pieces):
-        end = _farthest(strip, ends[-1], most, allowed)
+        end = _farthest(strip, ends[-1], most, allowed, likely) if len(ends) <= count else ends[-1]
         if end == ends[-1]:
             return None
+        likely = end - ends[-1]
         ends.append(end)
     return ends[1:]
 
 
-def _farthest(strip: Strip, start: int, most: float, allowed: float) -> int:
-    """Return the end of the longest run from `start` that neither exceeds the area nor overlaps."""
+def _farthest(strip: Strip, start: int, most: float, allowed: float, likely: int) -> int:
+    """Return the end of the longest run from `start` that neither exceeds the area nor overlaps.
+
+    likely: how long that may be, 0 where nothing is known.  A run of many turns takes the cube of them to look at, so
+    the end is looked for from there on where the area would permit a much longer one.
+    """
     spent = float(np.interp(start / STEPS, strip.knots, strip.area))
     last = int(np.interp(spent + most, strip.area, strip.knots) * STEPS)
-    if last > start and doubled(run_outline(strip, start, last)) <= allowed:
-        return last
-    fits, fails = start, last
+
+    def good(end: int) -> bool:
+        return end == start or doubled(run_outline(strip, start, end)) <= allowed
+
+    if likely and last - start > 2 * likely:
+        fits, fails = _around(good, start + likely, start, last)
+    else:
+        fits, fails = (last, last) if good(last) else (start, last)
     while fails - fits > 1:
         middle = (fits + fails) // 2
-        if doubled(run_outline(strip, start, middle)) <= allowed:
-            fits = middle
-        else:
-            fails = middle
+        fits, fails = (middle, fails) if good(middle) else (fits, middle)
     return fits
+
+
+def _around(good: Callable[[int], bool], near: int, first: int, last: int) -> tuple[int, int]:
+    """Return an end that is good and one that is not, both near one; the last of all twice where that is good."""
+    step, onward = 1, good(near)
+    here = near
+    while here != (last if onward else first):
+        there = min(here + step, last) if onward else max(here - step, first)
+        if good(there) != onward:
+            return (here, there) if onward else (there, here)
+        here, step = there, 2 * step
+    return here, here
 
 
 def run_outline(strip: Strip, low: int, high: int) -> ArcPath:

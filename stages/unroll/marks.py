@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from stages.geometry import biarc
+from stages.geometry.allowance import is_point
 from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import norm
 from stages.geometry.flatmap import DevelopedRuling, Development
@@ -41,10 +42,10 @@ def _line(development: Development, place: float, chord_mm: float) -> ArcPath:
 
 
 def traced(edges: Sequence[PlaneCurve], chord_mm: float) -> ArcPath:
-    """Return the path of a curve: closed if it ends where it begins."""
+    """Return the path of a curve: closed if it ends where it begins.  Edges that are points are left out."""
     first, last = edges[0].at(np.array([0.0]))[0], edges[-1].at(np.array([1.0]))[0]
     if norm(first - last) <= biarc.ZERO_LENGTH_MM:
         return biarc.trace(edges, accuracy=chord_mm)
-    parts = [biarc.fit(edge, accuracy=chord_mm) for edge in edges]
+    parts = [biarc.fit(edge, accuracy=chord_mm) for edge in edges if not is_point(edge)]
     vertices = np.concatenate([*(part.vertices[:-1] for part in parts), parts[-1].vertices[-1:]])
     return ArcPath(vertices, np.append(np.concatenate([part.bulges[:-1] for part in parts]), 0.0), closed=False)

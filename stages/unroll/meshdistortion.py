@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arap import Sheet, strain_tensors
+from stages.geometry.arap import Sheet, energy, strain_tensors, strains
 from stages.geometry.arrays import Array, Numbers, Points2, Values, cross2, norm
 from stages.geometry.meshflat import MeshMap, by_side, resting
 from stages.geometry.meshtopology import edges_of
@@ -27,22 +27,23 @@ class Loops:
 
 def distortion(surface: MeshSurface, flat: MeshMap, loops: Loops) -> tuple[Metric, ...]:
     """Return how far the map is from an isometry, by names that are those of every part."""
-    strains, at_rest = flat.strains, areas(sides(surface, flat))
-    worst = int(np.argmax(np.abs(strains).max(axis=1)))
-    longest, shortest = int(np.argmax(strains[:, 0])), int(np.argmin(strains[:, 1]))
-    square = np.abs((1.0 + strains) ** 2 - 1.0).max()
-    rms = float(np.sqrt(at_rest @ (strains**2).mean(axis=1) / at_rest.sum()))
+    rest = resting(surface.mesh, edges_of(surface.mesh), flat.lengths)
+    principal, at_rest = strains(rest, flat.positions), areas(sides(surface, flat))
+    worst = int(np.argmax(np.abs(principal).max(axis=1)))
+    longest, shortest = int(np.argmax(principal[:, 0])), int(np.argmin(principal[:, 1]))
+    square = np.abs((1.0 + principal) ** 2 - 1.0).max()
+    rms = float(np.sqrt(at_rest @ (principal**2).mean(axis=1) / at_rest.sum()))
     return (
         _length_error(surface, flat, loops),
         Metric("area_error", _area_error(surface, flat, at_rest)),
         Metric("angle_error_deg", _angle_error(surface, flat, loops), "deg"),
         Metric("metric_error", float(square)),
-        Metric("max_strain", float(np.abs(strains[worst]).max()), where=_where(surface, flat, worst)),
-        Metric("max_extension", float(max(strains.max(), 0.0)), where=_where(surface, flat, longest)),
-        Metric("max_compression", float(max(-strains.min(), 0.0)), where=_where(surface, flat, shortest)),
+        Metric("max_strain", float(np.abs(principal[worst]).max()), where=_where(surface, flat, worst)),
+        Metric("max_extension", float(max(principal.max(), 0.0)), where=_where(surface, flat, longest)),
+        Metric("max_compression", float(max(-principal.min(), 0.0)), where=_where(surface, flat, shortest)),
         Metric("strain_rms", rms),
         Metric("flattening_reached_mm", flat.reached_mm, "mm"),
-        Metric("strain_energy_mm2", flat.energy_mm2, "mm2"),
+        Metric("strain_energy_mm2", energy(rest, flat.positions), "mm2"),
     )
 
 

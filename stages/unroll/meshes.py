@@ -13,6 +13,8 @@ Nothing here is proved, and nothing is better than the mesh: its noise is in eve
 are measured here and not judged; `verify` judged them, over cells of many triangles, with their uncertainty.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from stages.geometry import contours
@@ -24,7 +26,7 @@ from stages.geometry.plane import CircularArc, PlaneCurve
 from stages.geometry.planespline import spline
 from stages.geometry.refit import refitted
 from stages.model.features import CircleHole
-from stages.model.pattern import FlatPattern
+from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Metric, Outcome, StageReport
 from stages.model.surface import Certificate, MeshSurface, Placed
 from stages.model.tolerances import Tolerances
@@ -80,7 +82,7 @@ def flatten_mesh(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPatte
         *made.findings,
     )
     corners = box(made.outer)
-    detail = {"class": certificate.reached} | _figures(surface, flat, made, corners) | sheet.detail
+    detail = {"class": certificate.reached} | _figures(surface, flat, made, (outer, *holes)) | sheet.detail
     report = StageReport("unroll", name, metrics, findings, detail)
     if not report.passed:
         return Outcome(None, report)
@@ -125,12 +127,15 @@ def _closed(points: Points2) -> Points2:
     return closed
 
 
-def _figures(surface: MeshSurface, flat: MeshMap, made: Features, corners: Points2) -> dict[str, object]:
-    """Return the figures of both sides: areas of the triangles on the surface, and of what is cut."""
-    area, length = sum(contours.area(one.edges) for one in (made.outer, *made.inner)), contours.length(made.outer.edges)
+def _figures(surface: MeshSurface, flat: MeshMap, made: Features, bare: Sequence[Contour]) -> dict[str, object]:
+    """Return the figures of both sides: area of the triangles on the surface, and inside the contours of the pattern.
+
+    bare: outline and holes of the mesh, without what is cut into them, as the triangles are without it.
+    """
+    area, length = sum(contours.area(one.edges) for one in bare), contours.length(bare[0].edges)
     return {
         "surface": {"area": float(areas(sides(surface, flat)).sum()), "edges": None},
-        "flat": flat_figures(made, corners, area=area, length=length),
+        "flat": flat_figures(made, box(made.outer), area=area, length=length),
         "flattened_on": flat.kind,
         "strain_field": strain_field(surface, flat),
     }

@@ -11,7 +11,7 @@ from stages.geometry.flatmap import Development
 from stages.geometry.ruled import RuledPatch, curvature
 from stages.model.pattern import Mark
 from stages.model.surface import RuledSurface
-from stages.unroll.bent import STRAIGHT
+from stages.unroll.bent import SLIGHT
 from stages.unroll.forming import flat_rulings
 
 
@@ -30,7 +30,7 @@ def _bend(surface: RuledSurface, v: float) -> float:
     """Return the curvature on the more curved side of a ruling, 1/mm; 0 where it does not jump."""
     after = next(i for i, (low, _) in enumerate(surface.spans) if float(low) == v)
     here = [_curvature(surface.patches[i], end) for i, end in ((after - 1, 1.0), (after, 0.0))]
-    if abs(here[1] - here[0]) * surface.size_mm <= STRAIGHT:
+    if abs(here[1] - here[0]) * surface.size_mm <= SLIGHT:
         return 0.0
     return max(here, key=abs)
 

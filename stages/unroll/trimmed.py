@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry import quadrature
-from stages.geometry.arrays import Array, ArrayValue, Values, Vector2, cross2, norm
-from stages.geometry.differentiation import matrix
+from stages.geometry.arrays import Array, ArrayValue, Values, Vector2, norm
+from stages.geometry.contours import swept
 from stages.geometry.flatmap import Development
 from stages.geometry.mapped import FlatStrip, MappedEdge, backwards, images
 from stages.geometry.plane import PlaneCurve
@@ -29,9 +29,6 @@ from stages.model.report import Metric
 from stages.model.surface import RuledSurface, Trim
 from stages.unroll import outline
 from stages.unroll.thickness import Neutral
-
-SLOPES = matrix(NODES)
-"""From values at the nodes of a panel to their derivatives, shape (16, 16)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,10 +112,10 @@ def _loop(name: str, curves: Sequence[PlaneCurve], flat: FlatStrip, strips: tupl
     lengths, areas = np.zeros(2), np.zeros(3)
     for edge in edges:
         breaks, figures = _on_surface(edge, strips[0])
-        flat_length, swept = _in_plane(edge, breaks, about)
+        flat_length, flat_area = _in_plane(edge, breaks, about)
         given = figures[1] if strips[1].patches is strips[0].patches else _on_surface(edge, strips[1])[1][1]
         lengths += np.array([figures[0], flat_length])
-        areas += np.array([figures[1], swept, given])
+        areas += np.array([figures[1], flat_area, given])
     return FlatLoop(name, edges if areas[1] > 0.0 else backwards(edges), lengths, np.abs(areas))
 
 
@@ -162,9 +159,7 @@ def _in_plane(edge: MappedEdge, breaks: Values, about: Vector2) -> tuple[float, 
     The panels that resolve the surface's figures serve the positions too, which are as smooth.
     """
     points = edge.at(quadrature.nodes(breaks[:-1], breaks[1:]).ravel()).reshape(breaks.size - 1, -1, 2)
-    slopes = np.einsum("ij,pjc->pic", SLOPES, points - points[:, :1])
-    swept = cross2(points - about, slopes) / 2.0
-    return float((norm(slopes) @ WEIGHTS).sum()), float((swept @ WEIGHTS).sum())
+    return swept(points, about)
 
 
 def with_trim(metrics: tuple[Metric, ...], cut: Trimmed) -> tuple[Metric, ...]:

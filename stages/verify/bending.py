@@ -24,8 +24,9 @@ from stages.verify import sampled
 KNOWN_DIGITS = 13
 """Of a radius, which is measured to some 1e-13 of itself: one that is a material's limit may not fail by rounding."""
 
-STRAIGHT = 1e-9
-"""A curvature below this share of 1/D bends the part by less than a nanometre per metre: flat."""
+UNBENT = 1e-9
+"""A part whose largest curvature is below this share of 1/D leaves its plane by less than a nanometre per metre: it has
+no radius at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +133,7 @@ def sharpest(
 
 
 def _bends(tight: Tight, size_mm: float) -> bool:
-    return tight.curvature * size_mm > STRAIGHT
+    return tight.curvature * size_mm > UNBENT
 
 
 def _radii(surface: RuledSurface, sign: float, tight: Tight, sheet: Layers) -> Sharpest:
@@ -145,7 +146,7 @@ def _unsigned(surface: RuledSurface, thickness: float) -> Sharpest | None:
     """Return the sharpest bend either way, the surface taken for the middle one."""
     found = [sampled.largest_curvature(patch, i) for i, patch in enumerate(surface.patches)]
     worst = max(found, key=lambda extreme: extreme.value)
-    if worst.value * surface.size_mm <= STRAIGHT:
+    if worst.value * surface.size_mm <= UNBENT:
         return None
     radius = 1.0 / worst.value
     where: Where = {"v": surface.v_of(worst.piece, worst.v)}

@@ -15,8 +15,9 @@ from stages.model.sheet import Nesting, SheetLayout
 from stages.write.bridged import bridged
 from stages.write.clipped import clipped_texts
 from stages.write.closing import closed_again
-from stages.write.compare import Comparison, common_lines, compared, cut_figures, metrics
+from stages.write.compare import Comparison, common_lines, compared, metrics
 from stages.write.contourfigures import measured_file
+from stages.write.cutfigures import cut_figures
 from stages.write.drawing import Drawing, flat_drawing
 from stages.write.dxf import dxf_text
 from stages.write.faults import faults

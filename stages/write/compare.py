@@ -12,7 +12,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from stages.errors import NoSolutionError
-from stages.geometry.arcpath import ArcPath, area, backwards, bounds, length, lengths
+from stages.geometry import manypaths
+from stages.geometry.arcpath import ArcPath, area, backwards, bounds, length
 from stages.geometry.arrays import norm
 from stages.geometry.biarc import LEAST_PIECE_MM
 from stages.geometry.hausdorff import hausdorff
@@ -20,7 +21,7 @@ from stages.geometry.outside import beyond
 from stages.geometry.sampling import Resolved, length_and_area, resolved
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
-from stages.write.alike import is_alike
+from stages.write.alike import Pair, are_alike
 from stages.write.chains import JOINT_MM, Entity
 from stages.write.closing import MEET_MM, Closed, is_shared
 from stages.write.drawing import Drawing, Item, Label
@@ -41,9 +42,6 @@ CLOSURE_MM = 0.01
 
 INSIDE_MM = JOINT_MM
 """What the ends of arcs of a file may be off by rounding is no matter of the side."""
-
-FOLLOWED = frozenset({"ENGRAVE", "MARK", "CUT_SLIT", "LEAD", "CUT_INNER", "CUT_OUTER"})
-"""The layers along which the head goes."""
 
 SINGLE_PIECES = frozenset({"CHAIN", "ARC"})
 """Paths whose ends were computed from centres and angles."""
@@ -84,7 +82,8 @@ def compared(
 
     closed: the outlines that share cuts, put together again from the file.
     """
-    shortest = min((float(lengths(item.path).min()) for item in drawing.items if item.contour is not None), default=inf)
+    drawn = [item.path for item in drawing.items if item.contour is not None]
+    shortest = float(manypaths.shortest(drawn).min(initial=inf))
     paths = [entity for entity in back.entities if entity.kind != "TEXT"]
     findings = tuple(
         Finding("readback-content", f"{drawing.path}: {text}", fatal=True, where={"file": drawing.path})
@@ -130,30 +129,6 @@ def _grown(contours: Sequence[ContourFigures]) -> tuple[Metric, ...]:
     return (Metric("inside_mm", furthest, "mm", limit=INSIDE_MM, where=_where(contour)),)
 
 
-def cut_figures(back: ReadFile) -> dict[str, float]:
-    """Return the cut length in mm, the number of pierces, and how far the head travels without cutting, in mm."""
-    return {**cuts(back.entities), "travel_mm": _travel(back)}
-
-
-def cuts(entities: Sequence[Entity]) -> dict[str, float]:
-    """Return how long the beam cuts, leads too and gaps of tabs not, in mm, and how often it pierces.
-
-    A lead is of one piercing with the cut beside it; each path between two tabs has one of its own.
-    """
-    cut = [entity.path for entity in entities if entity.layer.startswith("CUT_") and entity.path is not None]
-    leads = [entity.path for entity in entities if entity.layer == "LEAD" and entity.path is not None]
-    return {"cut_length_mm": float(sum(length(path) for path in (*cut, *leads))), "pierces": float(len(cut))}
-
-
-def _travel(back: ReadFile) -> float:
-    """Return the way between marks and cuts as they follow in the file, begun at the corner of a sheet, mm."""
-    sheet = [bounds(one.path)[:2] for one in back.entities if one.layer == "SHEET" and one.path is not None]
-    paths = [one.path for one in back.entities if one.layer in FOLLOWED and one.path is not None]
-    ends = [path.vertices[[0, 0 if path.closed else -1]] for path in paths]
-    route = np.vstack([np.reshape(sheet[0], (1, 2)) if sheet else ends[0][:1], *ends]) if ends else np.zeros((1, 2))
-    return float(norm(route[1::2] - route[:-1:2]).sum())
-
-
 def common_lines(back: ReadFile, closed: Closed, path: str) -> Iterator[Finding]:
     """Yield, if outlines share cuts, how many common lines there are and what they save, from the file alone."""
     lines = [entity.path for entity in back.entities if is_shared(entity) and entity.kind == "LINE" and entity.path]
@@ -179,11 +154,20 @@ def _differences(paths: Sequence[Entity], items: Sequence[Item]) -> Iterator[str
     if layers != wanted:
         yield f"holds {len(layers)} paths on other layers or in another order than the {len(wanted)} drawn"
         return
-    for entity, item in zip(paths, items, strict=True):
-        if entity.path is None or entity.path.closed != item.path.closed:
+    pairs = [(entity.path or item.path, item.path) for entity, item in zip(paths, items, strict=True)]
+    alike = are_alike(pairs, np.array([_near_mm(entity) for entity in paths])).tolist()
+    sizes = iter(_sizes([pair for pair, is_alike in zip(pairs, alike, strict=True) if not is_alike]))
+    for entity, (found, drawn), is_alike in zip(paths, pairs, alike, strict=True):
+        both = None if is_alike else next(sizes)
+        if entity.path is None or found.closed != drawn.closed:
             yield f"{entity.kind} on {entity.layer} is not the path that was drawn"
-            continue
-        yield from _sizes(entity, entity.path, item.path)
+        elif both is not None:
+            yield from _unlike_sizes(entity, both, drawn)
+
+
+def _near_mm(entity: Entity) -> float:
+    """Return how far a place may be off by rounding, mm."""
+    return ROUND_TRIP_MM if entity.kind not in SINGLE_PIECES else JOINT_MM
 
 
 def _unlike_outlines(closed: Closed, drawn: Sequence[ArcPath]) -> Iterator[str]:
@@ -194,8 +178,7 @@ def _unlike_outlines(closed: Closed, drawn: Sequence[ArcPath]) -> Iterator[str]:
         return
     if not drawn:
         return
-    boxes = cKDTree(np.array([bounds(path) for path in found]))
-    near = boxes.query_ball_point(np.array([bounds(path) for path in drawn]), MEET_MM, p=np.inf)
+    near = cKDTree(manypaths.boxes(found)).query_ball_point(manypaths.boxes(drawn), MEET_MM, p=np.inf)
     for path, places in zip(drawn, near, strict=True):
         if not any(_is_same(found[place], path) for place in places):
             yield "an outline in x {:.6g} to {:.6g}, y {:.6g} to {:.6g} is not there with what it shares".format(
@@ -229,22 +212,38 @@ def _unlike_labels(back: ReadFile, labels: Sequence[Label]) -> Iterator[str]:
             yield f"the text {label.text!r} is not where, as high or turned as it was drawn"
 
 
-def _sizes(entity: Entity, found: ArcPath, drawn: ArcPath) -> Iterator[str]:
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """How far a path lies from where it was drawn, mm; lengths in mm and areas in mm2, as found and as drawn."""
+
+    moved_mm: float
+    lengths_mm: tuple[float, float]
+    areas_mm2: tuple[float, float]
+
+
+def _sizes(pairs: Sequence[Pair]) -> list[Sizes]:
+    """Return how paths as found compare with what was drawn."""
+    both = [[pair[k] for pair in pairs] for k in (0, 1)]
+    boxes, long, wide = (
+        [figure(some) for some in both] for figure in (manypaths.boxes, manypaths.lengths, manypaths.areas)
+    )
+    moved = np.abs(boxes[0] - boxes[1]).max(axis=1).tolist()
+    rows = zip(moved, *(one.tolist() for one in (*long, *wide)), strict=True)
+    return [Sizes(off, (found, drawn), (held, asked)) for off, found, drawn, held, asked in rows]
+
+
+def _unlike_sizes(entity: Entity, both: Sizes, drawn: ArcPath) -> Iterator[str]:
     """Yield a place, a length or an area that did not survive; a circle's direction does not."""
-    near = ROUND_TRIP_MM if entity.kind not in SINGLE_PIECES else JOINT_MM
-    if is_alike(found, drawn, near):
-        return
-    moved = float(np.abs(np.subtract(bounds(found), bounds(drawn))).max())
-    if moved > near:
-        yield f"{entity.kind} on {entity.layer} lies {moved:.3g} mm from where it was drawn"
-    long = length(drawn)
-    if abs(length(found) - long) > ROUND_TRIP * long + near * entity.count:
-        yield f"{entity.kind} on {entity.layer} has the length {length(found):.9g} mm, drawn were {long:.9g} mm"
+    near, (found, long), (held, wide) = _near_mm(entity), both.lengths_mm, both.areas_mm2
+    if both.moved_mm > near:
+        yield f"{entity.kind} on {entity.layer} lies {both.moved_mm:.3g} mm from where it was drawn"
+    if abs(found - long) > ROUND_TRIP * long + near * entity.count:
+        yield f"{entity.kind} on {entity.layer} has the length {found:.9g} mm, drawn were {long:.9g} mm"
     if not drawn.closed:
         return
-    wide = abs(area(drawn)) if entity.kind == "CIRCLE" else area(drawn)
-    if abs(area(found) - wide) > ROUND_TRIP * abs(wide) + near * long:
-        yield f"{entity.kind} on {entity.layer} has the area {area(found):.9g} mm2, drawn were {wide:.9g} mm2"
+    wide = abs(wide) if entity.kind == "CIRCLE" else wide
+    if abs(held - wide) > ROUND_TRIP * abs(wide) + near * long:
+        yield f"{entity.kind} on {entity.layer} has the area {held:.9g} mm2, drawn were {wide:.9g} mm2"
 
 
 def _figures(

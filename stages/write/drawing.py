@@ -11,15 +11,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, bounds, distances, piece_count, split, transform
+from stages.geometry.arcpath import ArcPath, distances, piece_count, split, transform
 from stages.geometry.arrays import ArrayValue, Vector2
+from stages.geometry.manypaths import boxes
 from stages.geometry.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
 from stages.model.helps import Helps
-from stages.model.pattern import LETTER_WIDTH, Contour, Drill, FlatPattern, Purpose, Text
+from stages.model.pattern import LETTER_WIDTH, Drill, FlatPattern, Purpose, Text
 from stages.model.report import Finding
 from stages.model.sheet import SheetLayout
-from stages.model.strokes import Stroke, seen_from_below, strokes, turned_over
+from stages.model.strokes import seen_from_below, strokes, turned_over
 from stages.model.used import used_length_mm
 from stages.write.commonlines import in_turn, shared_cuts
 from stages.write.flavours import as_written
@@ -39,6 +40,7 @@ LEAST_REACH = 0.1
 
 FULL_TURN = 360.0
 QUARTER_BULGE = 0.41421356237309503
+UNMOVED = Rigid2()
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +50,7 @@ class Item:
     name: of the mark or hole, if it has one.  copy: which copy of the part on a sheet; 0 where there is but one.
     begun: it counts where it begins.  nominal: the contour that it lies half a kerf beside, if it does.
     purpose: of a contour.  drill: of a round hole that is drilled or stitched through, where it lies.
+    own: the path in the frame of its part, one and the same for all copies; motion: from there into the drawing.
     """
 
     layer: str
@@ -60,6 +63,8 @@ class Item:
     nominal: ArcPath | None = None
     purpose: Purpose | None = None
     drill: Drill | None = None
+    own: ArcPath | None = None
+    motion: Rigid2 = UNMOVED
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,26 +105,26 @@ class Drawing:
 
 def flat_drawing(pattern: FlatPattern, machine: Machine) -> Drawing:
     """Return the drawing of one part in its own flat frame."""
-    items, labels = _items(pattern, Rigid2(), machine), _texts(pattern, Rigid2(), machine)
+    part = _part(pattern, machine)
+    items, labels = _items(part, UNMOVED, machine), _texts(part, UNMOVED, machine)
     return Drawing(f"flat/{pattern.part}.dxf", _written(items, machine), tuple(labels))
 
 
 def sheet_drawing(layout: SheetLayout, patterns: Mapping[str, FlatPattern], machine: Machine) -> Drawing:
     """Return the drawing of one nested sheet."""
-    parts = [
-        [replace(item, copy=placed.copy) for item in _items(patterns[placed.part], placed.motion, machine)]
-        for placed in layout.placements
-    ]
-    items, divided = _sharing(parts, machine.common_kerf_mm)
+    parts = {name: _part(patterns[name], machine) for name in dict.fromkeys(one.part for one in layout.placements)}
+    copies = [_items(parts[one.part], one.motion, machine, one.copy) for one in layout.placements]
+    items, divided = _sharing(copies, machine.common_kerf_mm)
     items = [*stock_items(layout, patterns, machine), *items]
-    labels = [label for placed in layout.placements for label in _texts(patterns[placed.part], placed.motion, machine)]
+    labels = [label for one in layout.placements for label in _texts(parts[one.part], one.motion, machine)]
     path = machine.path(layout.sheet.id, layout.index)
     return Drawing(path, _written(items, machine), tuple(labels), machine.common_kerf_mm, divided)
 
 
 def _written(items: Iterable[Item], machine: Machine) -> tuple[Item, ...]:
     """Return the items with the paths that the flavour holds."""
-    return tuple(replace(item, path=as_written(item.path, machine, outline=item.contour is not None)) for item in items)
+    paths = [(item, as_written(item.path, machine, outline=item.contour is not None)) for item in items]
+    return tuple(item if path is item.path else replace(item, path=path) for item, path in paths)
 
 
 def _sharing(parts: Sequence[Sequence[Item]], kerf_mm: float | None) -> tuple[list[Item], tuple[ArcPath, ...]]:
@@ -164,70 +169,79 @@ def rectangle(width_mm: float, height_mm: float, x: float = 0.0, y: float = 0.0)
 
 def extent(paths: Iterable[ArcPath]) -> tuple[float, float, float, float]:
     """Return the exact extent of all paths (x least, y least, x most, y most) in mm."""
-    every = list(paths)
-    corners = np.concatenate([path.vertices for path in every])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    boxes = [np.reshape(bounds(path), (2, 2)) for path in every if path.bulges.any() and _swells(path, low, high)]
-    reached = np.concatenate([np.stack([low, high]), *boxes])
-    (low_x, low_y), (high_x, high_y) = reached.min(axis=0), reached.max(axis=0)
+    every = boxes(list(paths))
+    (low_x, low_y), (high_x, high_y) = every[:, :2].min(axis=0), every[:, 2:].max(axis=0)
     return float(low_x), float(low_y), float(high_x), float(high_y)
 
 
-def _swells(path: ArcPath, low: Vector2, high: Vector2) -> bool:
-    """Return whether the arcs of a path may reach out of a box: an arc rises over its chord by bulge times half of it.
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """What the copies of a part have in common: its paths in its own frame, in the order of cutting, and its label."""
 
-    One of more than half a circle may in any case.
-    """
-    least, most = path.vertices.min(axis=0), path.vertices.max(axis=0)
-    steepest = float(np.abs(path.bulges).max())
-    rise = steepest * float(np.hypot(*(most - least))) / 2.0
-    return steepest > 1.0 or bool((least - rise < low).any() or (most + rise > high).any())
+    pattern: FlatPattern
+    items: tuple[Item, ...]
+    label: Label
 
 
-def _items(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
-    """Return the paths of one copy of a part, in the order of cutting."""
+def _part(pattern: FlatPattern, machine: Machine) -> _Part:
+    """Return a part as it is before it lies anywhere."""
     contours = (pattern.outer, *pattern.inner)
-
-    def moved(stroke: Stroke) -> Item:
-        path = transform(split(stroke.path, max_bulge=machine.max_bulge), motion)
-        layer = seen_from_below(stroke.layer) if turned_over(pattern, motion) else stroke.layer
-        item = Item(layer, pattern.part, path, stroke.contour, stroke.name)
-        return item if stroke.contour is None else _of_contour(item, contours[stroke.contour], motion)
-
-    return [*_engraved(pattern, motion, machine), *(moved(stroke) for stroke in strokes(pattern))]
-
-
-def _of_contour(item: Item, contour: Contour, motion: Rigid2) -> Item:
-    """Return the item of a contour with what the contour is for."""
-    beside = None if contour.nominal is None else transform(contour.nominal, motion)
-    drill = drill_of(contour)
-    there = None if drill is None else drill.replace(at=apply(motion, drill.at[None, :])[0])
-    return replace(item, nominal=beside, purpose=contour.purpose, drill=there)
+    items = []
+    for stroke in strokes(pattern):
+        path = split(stroke.path, max_bulge=machine.max_bulge)
+        item = Item(stroke.layer, pattern.part, path, stroke.contour, stroke.name, own=path)
+        if stroke.contour is not None:
+            contour = contours[stroke.contour]
+            item = replace(item, nominal=contour.nominal, purpose=contour.purpose, drill=drill_of(contour))
+        items.append(item)
+    return _Part(pattern, tuple(items), _label(pattern))
 
 
-def _engraved(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Item]:
+def _items(part: _Part, motion: Rigid2, machine: Machine, copy: int = 0) -> list[Item]:
+    """Return the paths of one copy of a part, in the order of cutting."""
+    below = turned_over(part.pattern, motion)
+    engraved = [Item("ENGRAVE", part.pattern.part, path, copy=copy) for path in _engraved(part, motion, machine)]
+    return [*engraved, *(_lying(item, motion, copy, below=below) for item in part.items)]
+
+
+def _lying(item: Item, motion: Rigid2, copy: int, *, below: bool) -> Item:
+    """Return an item of a part where a copy lies; below: whether that shows its lower side."""
+    return Item(
+        seen_from_below(item.layer) if below else item.layer,
+        item.part,
+        transform(item.path, motion),
+        item.contour,
+        item.name,
+        copy,
+        nominal=None if item.nominal is None else transform(item.nominal, motion),
+        purpose=item.purpose,
+        drill=None if item.drill is None else item.drill.replace(at=apply(motion, item.drill.at[None, :])[0]),
+        own=item.own,
+        motion=motion,
+    )
+
+
+def _engraved(part: _Part, motion: Rigid2, machine: Machine) -> list[ArcPath]:
     """Return the part's name and texts as strokes if the machine wants that, and they are not among its marks.
 
     What of them does not lie on the part is left out (`stages.write.clipped` says so).
     """
+    pattern = part.pattern
     if machine.text == "TEXT" or any(mark.layer == "ENGRAVE" for mark in pattern.marks):
         return []
-    name = _label(pattern, motion)
+    name = _moved_label(part.label, motion)
     fits = LABEL_FILL * room(pattern) / max(reach(name.text), LEAST_REACH)
     labels = [name.replace(height_mm=min(fits, LABEL_MOST_MM)), *(moved_text(text, motion) for text in pattern.texts)]
     region = region_of([transform(contour.path, motion) for contour in (pattern.outer, *pattern.inner)])
-    return [
-        Item("ENGRAVE", pattern.part, path)
-        for label in labels
-        for path in on_part(lettering(label.text, label.at, label.height_mm, label.angle_deg), region)
-    ]
+    strokes_of = (lettering(label.text, label.at, label.height_mm, label.angle_deg) for label in labels)
+    return [path for some in strokes_of for path in on_part(some, region)]
 
 
-def _texts(pattern: FlatPattern, motion: Rigid2, machine: Machine) -> list[Label]:
+def _texts(part: _Part, motion: Rigid2, machine: Machine) -> list[Label]:
     """Return the part's name and the texts on it, unless they are strokes."""
     if machine.text == "strokes":
         return []
-    return [_label(pattern, motion), *(moved_text(text, motion) for text in pattern.texts)]
+    return [_moved_label(part.label, motion), *(moved_text(text, motion) for text in part.pattern.texts)]
 
 
 def moved_text(text: Text, motion: Rigid2) -> Label:
@@ -237,10 +251,14 @@ def moved_text(text: Text, motion: Rigid2) -> Label:
     return Label("LABEL", text.text, at, text.height_mm, (angle + motion.angle_deg) % FULL_TURN)
 
 
-def _label(pattern: FlatPattern, motion: Rigid2) -> Label:
-    """Return the part's name at its place; turned with the part, never mirrored."""
-    at = apply(motion, pattern.label_at[None, :])[0]
-    return Label("LABEL", pattern.part, at, _label_height(pattern), motion.angle_deg)
+def _label(pattern: FlatPattern) -> Label:
+    """Return the part's name at its place."""
+    return Label("LABEL", pattern.part, pattern.label_at, _label_height(pattern), 0.0)
+
+
+def _moved_label(label: Label, motion: Rigid2) -> Label:
+    """Return the name of a part on a copy: turned with it, never mirrored."""
+    return label.replace(at=apply(motion, label.at[None, :])[0], angle_deg=motion.angle_deg)
 
 
 def _label_height(pattern: FlatPattern) -> float:

@@ -58,8 +58,14 @@ BEFORE = "  9\n$LUNITS\n"
 ENTITIES = "  0\nSECTION\n  2\nENTITIES\n"
 HEXADECIMAL = 16
 
-NUMBERS = ((10, 59), (110, 149), (210, 239), (460, 469), (1010, 1059))
-"""Group codes of floating-point numbers, first and last."""
+LETTERED_NUMBER = re.compile(
+    r"^ *(?:[1-5][0-9]|1[1-4][0-9]|2[1-3][0-9]|46[0-9]|10[1-5][0-9])\n([^\n]*[A-Za-z][^\n]*)$", re.MULTILINE
+)
+"""A tag that holds a floating-point number, with a letter in its value: that of `nan` or `inf`, or an exponent.
+
+Their group codes are 10 to 59, 110 to 149, 210 to 239, 460 to 469 and 1010 to 1059 (AutoCAD's DXF reference, "Group
+codes").  No code has a letter, so this cannot begin at a value.
+"""
 
 JULIAN_2000 = 2451545.0
 NO_GUID = "{00000000-0000-0000-0000-000000000000}"
@@ -147,22 +153,9 @@ def _order_classes(document: Document) -> None:
 
 
 def finite(text: str) -> str:
-    """Return a DXF text as it is; ValueError where a tag that holds a number holds none, or one that is not finite.
-
-    Letters in a number are those of `nan` and `inf`, or an exponent: only values that have some are looked at.
-    """
-    for tag in LETTERED.finditer(text):
-        code, value = tag.groups()
-        if holds_number(int(code)) and not isfinite(float(value)):
-            line = text.count("\n", 0, tag.start(2)) + 1
-            raise ValueError(f"line {line} of a cut file must be a finite number: {value.strip()}")
+    """Return a DXF text as it is; ValueError where a tag that holds a number holds none, or one that is not finite."""
+    for tag in LETTERED_NUMBER.finditer(text):
+        if not isfinite(float(tag[1])):
+            line = text.count("\n", 0, tag.start(1)) + 1
+            raise ValueError(f"line {line} of a cut file must be a finite number: {tag[1].strip()}")
     return text
-
-
-LETTERED = re.compile(r"^ *([0-9]+)\n([^\n]*[A-Za-z][^\n]*)$", re.MULTILINE)
-"""A tag with a letter in its value: code and value.  No code has one, so this cannot begin at a value."""
-
-
-def holds_number(code: int) -> bool:
-    """Return whether tags of a group code hold a number with a point (AutoCAD's DXF reference, "Group codes")."""
-    return any(first <= code <= last for first, last in NUMBERS)

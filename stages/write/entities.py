@@ -35,4 +35,5 @@ def rounded(values: Array, decimals: int) -> list[float]:
     if not np.isfinite(values).all():
         raise ValueError(f"a number in a cut file must be finite: {values}")
     # adding 0 turns -0.0 into 0.0
-    return [float(value) for value in np.round(values, decimals) + 0.0]
+    numbers: list[float] = (np.round(values, decimals) + 0.0).tolist()
+    return numbers

@@ -6,12 +6,13 @@ extents.  A check that depends on an earlier one (an order that is judged by con
 where that one has spoken.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from stages.geometry.arcpath import area, lengths
-from stages.geometry.arrays import Array, norm
+from stages.geometry import manypaths
+from stages.geometry.arcpath import ArcPath, area, chords, length
+from stages.geometry.arrays import Array, Values, norm
 from stages.geometry.overlap import overlaps
 from stages.model.report import Finding
 from stages.write.chains import Entity
@@ -122,38 +123,49 @@ def _order(file: ReadFile, closed: Closed | None, chord_mm: float) -> Iterator[s
 
 
 def _vertices(file: ReadFile) -> Iterator[tuple[str, str]]:
-    """Yield vertices that follow themselves, the last one and the first included."""
-    for entity in file.entities:
-        if entity.path is None:
-            continue
-        step = norm(np.diff(entity.path.vertices, axis=0, append=entity.path.vertices[:1]))
-        count = int(np.count_nonzero(step <= SAME_VERTEX_MM))
-        if count and entity.closed:
+    """Yield vertices that follow themselves on what is closed or cut, on what is closed the last one and the first."""
+    some = [(entity, path) for entity, path in _paths(file.entities) if entity.closed or entity.layer in CUT_LAYERS]
+    for (entity, path), least in _with(some, manypaths.shortest_chords):
+        if least <= SAME_VERTEX_MM:
+            start, end = chords(path)
+            count = np.count_nonzero(norm(end - start) <= SAME_VERTEX_MM)
             yield "readback-repeated-vertex", f"{entity.kind} on {entity.layer} repeats {count} of its vertices"
 
 
 def _short_pieces(file: ReadFile, shortest_mm: float) -> Iterator[str]:
     """Yield cut pieces that are too short for a controller."""
-    for entity in _cut(file.entities):
-        least = float(lengths(entity.path).min()) if entity.path is not None else np.inf
+    for (entity, _), least in _with(_paths(_cut(file.entities)), manypaths.shortest):
         if SAME_VERTEX_MM < least < shortest_mm:
             yield f"{entity.kind} on {entity.layer} has a piece of {least:.3g} mm, under {shortest_mm:.3g} mm"
 
 
 def _bulges(file: ReadFile) -> Iterator[tuple[str, str]]:
     """Yield arcs of more than a half circle."""
-    for entity in file.entities:
-        if entity.path is not None and np.abs(entity.path.bulges).max() > MOST_BULGE:
+    for (entity, _), most in _with(_paths(file.entities), manypaths.steepest):
+        if most > MOST_BULGE:
             yield "readback-bulge", f"{entity.kind} on {entity.layer} has an arc of more than 180 degrees"
 
 
 def _directions(file: ReadFile) -> Iterator[tuple[str, str]]:
     """Yield outer contours that run clockwise and inner ones that run counter-clockwise; circles have no direction."""
-    for entity in _cut(file.entities):
-        if entity.path is None or not entity.closed or entity.kind == "CIRCLE":
-            continue
-        if (area(entity.path) > 0.0) != (entity.layer == "CUT_OUTER"):
+    closed = [(one, path) for one, path in _paths(_cut(file.entities)) if one.closed and one.kind != "CIRCLE"]
+    for (entity, _), wide in _with(closed, manypaths.areas):
+        if (wide > 0.0) != (entity.layer == "CUT_OUTER"):
             yield "readback-direction", f"{entity.kind} on {entity.layer} runs the wrong way round"
+
+
+Followed = tuple[Entity, ArcPath]
+"""An entity and its path."""
+
+
+def _paths(entities: Iterable[Entity]) -> list[Followed]:
+    """Return the entities that are paths."""
+    return [(entity, entity.path) for entity in entities if entity.path is not None]
+
+
+def _with(some: Sequence[Followed], figures: Callable[[Sequence[ArcPath]], Values]) -> Iterator[tuple[Followed, float]]:
+    """Yield each of some entities with a figure of its path."""
+    yield from zip(some, figures([path for _, path in some]).tolist(), strict=True)
 
 
 def _cut(entities: Sequence[Entity]) -> list[Entity]:
@@ -169,7 +181,7 @@ def _overlaps(entities: Sequence[Entity], path: str) -> Iterator[Finding]:
     paths = [(cut, part) for cut, part in known if cut is not None]
     for overlap in overlaps([cut for cut, _ in paths], apart=APART_MM, least=OVERLAP_MM) if paths else []:
         (first, part), (second, other) = paths[overlap.first], paths[overlap.second]
-        whole = min(float(lengths(first).sum()), float(lengths(second).sum()))
+        whole = min(length(first), length(second))
         text = f"{path}: {overlap.length_mm:.3f} mm would be cut twice"
         if part != other and overlap.length_mm < WHOLE * whole:
             yield Finding("readback-common-cut", f"{text} (parts touch; ask for a gap)", where={"file": path})

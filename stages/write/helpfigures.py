@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stages.geometry import manypaths
 from stages.geometry.arcpath import ArcPath, backwards
 from stages.geometry.arrays import norm
 from stages.geometry.compensation import Fit
@@ -16,7 +17,7 @@ from stages.geometry.leads import APART_MM, Obstacles
 from stages.model.helps import Helps
 from stages.model.report import Finding
 from stages.write.chains import Entity
-from stages.write.compare import cuts
+from stages.write.cutfigures import cuts
 from stages.write.drawing import Drawing
 from stages.write.helps import LEAD, SHUT_LAYERS
 from stages.write.kerf import CUT_LAYERS, fits
@@ -73,11 +74,7 @@ def _lead_faults(entities: Sequence[Entity], whole: Sequence[Entity], helps: Hel
     """Yield the leads that hang in the air, and those that come too near to a contour."""
     obstacles = Obstacles([one.path for one in whole if one.layer in SHUT_LAYERS and one.path is not None])
     least = max(helps.beam_mm / 2.0 - helps.offset_mm, APART_MM)
-    ways = [
-        _ending(entity.path, entities[place - 1 : place], entities[place + 1 : place + 2])
-        for place, entity in enumerate(entities)
-        if entity.layer == LEAD and entity.path is not None
-    ]
+    ways = list(_ending(entities))
     ending = [way for way in ways if way is not None]
     for _ in range(len(ways) - len(ending)):
         yield "readback-lead", "a lead does not end on the cut beside it"
@@ -85,17 +82,21 @@ def _lead_faults(entities: Sequence[Entity], whole: Sequence[Entity], helps: Hel
         yield "readback-lead", "a lead comes too near to a contour"
 
 
-def _ending(lead: ArcPath, before: Sequence[Entity], after: Sequence[Entity]) -> ArcPath | None:
-    """Return a lead such that its end lies on the cut beside it; None if neither end does.
+def _ending(entities: Sequence[Entity]) -> Iterator[ArcPath | None]:
+    """Yield each lead such that its end lies on the cut beside it, the one after it first; None if neither end does.
 
     Which way round it runs is not asked: an ARC has no direction.
     """
-    for one, end in ((after, 0), (before, -1)):
-        cut = one[0].path if one and one[0].layer in CUT_LAYERS else None
-        if cut is None:
-            continue
-        at = cut.vertices[0 if cut.closed else end]
-        for way in (lead, backwards(lead)):
-            if float(norm(way.vertices[-1] - at)) <= MEETS_MM:
-                return way
-    return None
+    known = [number for number, entity in enumerate(entities) if entity.path is not None]
+    paths = [entity.path for entity in entities if entity.path is not None]
+    tips = np.full((2, len(entities) + 2, 2), np.nan)
+    tips[:, np.array(known, dtype=np.int64) + 1] = manypaths.ends(paths)
+    starts, ends = tips
+    cut = np.array([False, *(entity.layer in CUT_LAYERS for entity in entities), False])
+    leads = [(number, path) for number, path in zip(known, paths, strict=True) if entities[number].layer == LEAD]
+    place = np.array([number for number, _ in leads], dtype=np.int64) + 1
+    sides = ((place + 1, starts), (place - 1, ends))
+    met = [cut[side] & (norm(at[side] - tip[place]) <= MEETS_MM) for side, at in sides for tip in (ends, starts)]
+    turn = np.select(met, (1, -1, 1, -1), 0)
+    for (_, lead), way in zip(leads, turn.tolist(), strict=True):
+        yield None if way == 0 else lead if way > 0 else backwards(lead)

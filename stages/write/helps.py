@@ -6,26 +6,26 @@ way off right after, so that contours stay closed where there are no tabs.  Wher
 contour, the edge of the sheet or a defect, the contour begins at another place; where there is none, it has no lead,
 which is said.
 
-What is left of outlines that share cuts has no helps: it begins where a common line takes over.
+How a contour is cut is planned once for all copies of its part that lie alike (`helpplans`); copy by copy it is looked
+at what is around.  What is left of outlines that share cuts has no helps: it begins where a common line takes over.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, backwards, bounds, length, piece_count, sweeps
-from stages.geometry.arrays import Points2, Vector2
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.leads import APART_MM, Obstacles, off, round_in, straight
-from stages.geometry.pathparts import begun, direction_at
-from stages.geometry.tabs import Gaps, Wish, gaps, opened
+from stages.geometry.arcpath import ArcPath, transform
+from stages.geometry.arrays import Array, Points2
+from stages.geometry.leads import APART_MM, Obstacles
+from stages.geometry.rigid import Rigid2
 from stages.model.cutfile import Machine
-from stages.model.helps import Helps, Lead, Tabs
+from stages.model.helps import Helps
 from stages.write.drawing import Drawing, Item
 from stages.write.flavours import as_written
+from stages.write.helpplans import Led, Plan, from_place, lying, plan
 from stages.write.helptold import Done, told
-from stages.write.starts import starts
+from stages.write.starts import SIDES
 
 LEAD = "LEAD"
 SHUT_LAYERS = ("SHEET", "SHEET_KEEPOUT", "CUT_INNER", "CUT_OUTER")
@@ -33,25 +33,15 @@ SHUT_LAYERS = ("SHEET", "SHEET_KEEPOUT", "CUT_INNER", "CUT_OUTER")
 
 BEND_LAYERS = ("BEND_UP", "BEND_DOWN")
 
-CLEAR_MM = 2.0
-"""How far a tab stays from corners and from ends of bend lines: it is broken off with pliers, and leaves a burr."""
-
-Ways = tuple[ArcPath | None, ArcPath | None]
-"""The way to the beginning of a path, and that off its end."""
-
 
 @dataclass(frozen=True, slots=True)
-class Plan:
-    """How one closed contour is to be cut: open paths between gaps, or whole from one of some places, the best first.
-
-    own: its number among what leads keep clear of.
-    """
+class Copy:
+    """A closed contour of a drawing: its number among what leads keep clear of, its plan, and where that lies."""
 
     own: int
     item: Item
-    pieces: tuple[Item, ...] = ()
-    gaps: Gaps | None = None
-    places: tuple[float, ...] = ()
+    plan: Plan
+    motion: Rigid2
 
 
 def helped(drawing: Drawing, machine: Machine) -> Drawing:
@@ -60,149 +50,124 @@ def helped(drawing: Drawing, machine: Machine) -> Drawing:
     if not helps.any:
         return drawing
     shut = [number for number, item in enumerate(drawing.items) if item.layer in SHUT_LAYERS]
-    bends = _bend_ends(drawing.items)
-    plans = {
-        number: _plan(item, own, helps, bends)
-        for own, number in enumerate(shut)
-        if (item := drawing.items[number]).contour is not None and item.path.closed
-    }
-    obstacles = Obstacles([drawing.items[number].path for number in shut])
-    cut = dict(zip(plans, _cut(list(plans.values()), helps, obstacles), strict=True))
+    obstacles = Obstacles([drawing.items[number].path for number in shut] if helps.leads else [])
+    copies = _copies(drawing.items, shut, machine)
+    cut = dict(zip(copies, _cut(list(copies.values()), machine, obstacles), strict=True))
     done = [
-        replace(cut[number], items=_written(cut[number].items, machine))
-        if number in cut
-        else Done((replace(item, nominal=None),), item.part, shared=item.contour is not None)
+        cut.get(number) or Done((replace(item, nominal=None),), item.part, shared=item.contour is not None)
         for number, item in enumerate(drawing.items)
     ]
     items = tuple(item for one in done for item in one.items)
     return replace(drawing, items=items, helps=helps, told=told(drawing.path, helps, done))
 
 
-def _written(items: Iterable[Item], machine: Machine) -> tuple[Item, ...]:
-    """Return the items with paths that the flavour holds."""
-    return tuple(replace(item, path=as_written(item.path, machine, outline=item.contour is not None)) for item in items)
+def _copies(items: Sequence[Item], shut: Sequence[int], machine: Machine) -> dict[int, Copy]:
+    """Return the closed contours by their numbers; those of copies that lie alike have one plan."""
+    bends, plans = _bends(items), dict[tuple[str, ArcPath, float, bool], Plan]()
+    copies = {}
+    for own, number in enumerate(shut):
+        item = items[number]
+        if item.contour is None or not item.path.closed:
+            continue
+        frame = _frame(item, machine.helps)
+        own_path = item.own or item.path
+        key = (item.part, own_path, frame.angle_deg, frame.mirrored)
+        if key not in plans:
+            contour = as_written(transform(own_path, frame), machine, outline=True)
+            ends = [transform(line, frame).vertices[[0, -1]] for line in bends.get((item.part, item.copy), ())]
+            plans[key] = plan(contour, machine, _joined(ends), outer=item.contour == 0)
+        rest = Rigid2(item.motion.x, item.motion.y, item.motion.angle_deg - frame.angle_deg)
+        copies[number] = Copy(own, item, plans[key], rest)
+    return copies
 
 
-def _bend_ends(items: Sequence[Item]) -> Points2:
-    """Return the ends of all bend lines."""
-    ends = [item.path.vertices[[0, -1]] for item in items if item.layer in BEND_LAYERS]
-    return np.concatenate(ends) if ends else np.zeros((0, 2))
+def _frame(item: Item, helps: Helps) -> Rigid2:
+    """Return the motion into the frame in which a contour is planned."""
+    angle = item.motion.angle_deg if helps.start in SIDES else 0.0
+    return Rigid2(0.0, 0.0, angle, item.motion.mirrored)
 
 
-def _plan(item: Item, own: int, helps: Helps, bends: Points2) -> Plan:
-    """Return how a closed contour is to be cut, as far as that does not depend on what is around it."""
-    found = None
-    if helps.tabs is not None and _is_held(item, helps.tabs):
-        found = _gaps(item.path, helps.tabs, helps.gap_mm, bends)
-    if found is not None and found.middles:
-        rests = enumerate(opened(item.path, found, helps.gap_mm))
-        pieces = (
-            replace(item, path=rest, begun=True, nominal=None if number else item.nominal) for number, rest in rests
-        )
-        return Plan(own, item, tuple(pieces), found)
-    if not helps.begins:
-        return Plan(own, item, (), found)
-    return Plan(own, item, (), found, tuple(starts(item.path, helps.start)))
+def _bends(items: Sequence[Item]) -> dict[tuple[str, int], list[ArcPath]]:
+    """Return the bend lines of all copies, each in the frame of its part."""
+    found: dict[tuple[str, int], list[ArcPath]] = {}
+    for item in items:
+        if item.layer in BEND_LAYERS:
+            found.setdefault((item.part, item.copy), []).append(item.own or item.path)
+    return found
 
 
-def _cut(plans: Sequence[Plan], helps: Helps, obstacles: Obstacles) -> list[Done]:
+def _joined(points: Sequence[Array]) -> Points2:
+    return np.concatenate([np.zeros((0, 2)), *points])
+
+
+def _cut(copies: Sequence[Copy], machine: Machine, obstacles: Obstacles) -> list[Done]:
     """Return the paths that each contour is cut by, with their leads."""
-    rows = [plan.pieces or (_from(plan, 0),) for plan in plans]
-    every = [(piece, plan.own) for plan, row in zip(plans, rows, strict=True) for piece in row]
-    led = iter(_led(every, helps, obstacles))
-    done = [_together(plan, [next(led) for _ in row]) for plan, row in zip(plans, rows, strict=True)]
+    rows: dict[tuple[Plan, int], tuple[Led, ...]] = {}
+
+    def tried(place: int, some: Sequence[int]) -> Iterator[Done]:
+        """Yield copies as they are cut from their place of that number."""
+        for number in some:
+            key = copies[number].plan, place
+            rows[key] = rows.get(key) or from_place(*key, machine)
+        there = [lying(rows[copies[number].plan, place], copies[number].motion) for number in some]
+        rooms = iter(_rooms(there, [copies[number].own for number in some], machine.helps, obstacles))
+        for number, row in zip(some, there, strict=True):
+            yield _done(copies[number], row, [next(rooms) for _ in row])
+
+    planned = [number for number, copy in enumerate(copies) if copy.plan.pieces or copy.plan.places]
+    found = dict(zip(planned, tried(0, planned), strict=True))
     place = 0
-    while left := [k for k, plan in enumerate(plans) if done[k].blocked and len(plan.places) > place + 1]:
+    while left := [k for k in planned if found[k].blocked and len(copies[k].plan.places) > place + 1]:
         place += 1
-        tried = _led([(_from(plans[k], place), plans[k].own) for k in left], helps, obstacles)
-        for k, one in zip(left, tried, strict=True):
-            if one.leads:
-                done[k] = replace(one, missing_tabs=done[k].missing_tabs, moved=True)
-    return done
+        found |= {k: replace(one, moved=True) for k, one in zip(left, tried(place, left), strict=True) if one.leads}
+    return [found.get(number) or _as_drawn(copy) for number, copy in enumerate(copies)]
 
 
-def _from(plan: Plan, number: int) -> Item:
-    """Return a whole contour from one of the places where it may begin."""
-    if not plan.places:
-        return plan.item
-    return replace(plan.item, path=begun(plan.item.path, plan.places[number]), begun=True)
+def _as_drawn(copy: Copy) -> Done:
+    """Return a contour that nothing is done on."""
+    return Done((copy.item,), copy.item.part, missing_tabs=copy.plan.gaps.missing)
 
 
-def _together(plan: Plan, led: Sequence[Done]) -> Done:
-    """Return the paths of one contour, each with its leads, as one."""
-    found = plan.gaps or Gaps((), 0, 0.0)
+def _done(copy: Copy, row: Sequence[Led], rooms: Sequence[float | None]) -> Done:
+    """Return the paths of one contour, each with its leads where they are free."""
+    item, gaps = copy.item, copy.plan.gaps
+    items: list[Item] = []
+    leads = 0
+    for number, (one, room) in enumerate(zip(row, rooms, strict=True)):
+        onto, away = one.drawn if room is not None else (None, None)
+        nominal = None if number else item.nominal
+        items += _lead(item, onto)
+        items.append(replace(item, path=one.path, begun=True, nominal=nominal, own=None))
+        items += _lead(item, away)
+        leads += (onto is not None) + (away is not None)
     return Done(
-        tuple(one for some in led for one in some.items),
-        plan.item.part,
-        tabs=len(found.middles),
-        missing_tabs=found.missing,
-        uneven_mm=found.uneven_mm if found.middles else 0.0,
-        leads=sum(some.leads for some in led),
-        blocked=sum(some.blocked for some in led),
-        room_mm=min(some.room_mm for some in led),
+        tuple(items),
+        item.part,
+        tabs=len(gaps.middles),
+        missing_tabs=gaps.missing,
+        uneven_mm=gaps.uneven_mm if gaps.middles else 0.0,
+        leads=leads,
+        blocked=sum(room is None for room in rooms),
+        room_mm=min(np.inf if room is None else room for room in rooms),
     )
 
 
-def _is_held(item: Item, tabs: Tabs) -> bool:
-    """Return whether a contour is to have tabs."""
-    low_x, low_y, high_x, high_y = bounds(item.path)
-    small = tabs.below_mm is None or min(high_x - low_x, high_y - low_y) < tabs.below_mm
-    return small and (tabs.holes or item.contour == 0)
+def _lead(item: Item, way: ArcPath | None) -> list[Item]:
+    return [] if way is None else [Item(LEAD, item.part, way, name=item.name, copy=item.copy)]
 
 
-def _gaps(path: ArcPath, tabs: Tabs, gap: float, bends: Points2) -> Gaps:
-    """Return where the gaps of a contour are to be."""
-    wanted = tabs.count if tabs.spacing_mm is None else int(np.ceil(length(path) / tabs.spacing_mm))
-    return gaps(path, Wish(wanted or 1, gap, max(CLEAR_MM, gap), 2.0 * LEAST_PIECE_MM), bends)
-
-
-def _led(every: Sequence[tuple[Item, int]], helps: Helps, obstacles: Obstacles) -> list[Done]:
-    """Return paths that are cut, each with the number of its contour among the obstacles, with leads that are free."""
-    ways = [_leads(item.path, helps) if helps.leads else (None, None) for item, _ in every]
-    rooms = _rooms(ways, [own for _, own in every], helps, obstacles)
-    return [_with_leads(item, way, room) for (item, _), way, room in zip(every, ways, rooms, strict=True)]
-
-
-def _with_leads(item: Item, ways: Ways, room: float | None) -> Done:
-    """Return a path with its leads, if they are free."""
-    if room is None:
-        return Done((item,), item.part, blocked=1)
-    onto, away = (() if way is None else (Item(LEAD, item.part, way, name=item.name, copy=item.copy),) for way in ways)
-    return Done((*onto, item, *away), item.part, leads=len(onto) + len(away), room_mm=room)
-
-
-def _leads(path: ArcPath, helps: Helps) -> Ways:
-    """Return the leads of a path that is cut, closed or not."""
-    last = piece_count(path) - 1
-    end = path.vertices[0] if path.closed else path.vertices[-1]
-    arriving = direction_at(path, float(last)) + float(sweeps(path)[last])
-    onto = _lead(helps.lead_in, path.vertices[0], direction_at(path, 0.0))
-    away = _lead(helps.lead_out, end, arriving)
-    return onto, None if away is None else off(away, end, arriving)
-
-
-def _lead(lead: Lead | None, at: Vector2, direction: float) -> ArcPath | None:
-    """Return the way to a point."""
-    if lead is None:
-        return None
-    way = straight if lead.kind == "line" else round_in
-    return way(at, direction, lead.length_mm, float(np.radians(lead.angle_deg)))
-
-
-def _rooms(ways: Sequence[Ways], owns: Sequence[int], helps: Helps, obstacles: Obstacles) -> list[float | None]:
+def _rooms(
+    rows: Sequence[Sequence[Led]], owns: Sequence[int], helps: Helps, obstacles: Obstacles
+) -> list[float | None]:
     """Return how near the leads of each path come to what is not their contour, mm; None if that is too near."""
     least = max(helps.beam_mm / 2.0 - helps.offset_mm, APART_MM)
-    named = [
-        (number, way)
-        for number, (onto, away) in enumerate(ways)
-        for way in (onto, None if away is None else backwards(away))
-        if way is not None
+    every = [(one, own) for row, own in zip(rows, owns, strict=True) for one in row]
+    named = [(number, way) for number, (one, _) in enumerate(every) for way in one.ways if way is not None]
+    number = np.array([one for one, _ in named], dtype=np.int64)
+    own = np.array([own for _, own in every], dtype=np.int64)[number]
+    within = least + np.array([one.reach_mm for one, _ in every])[number]
+    room = np.full(len(every), np.inf)
+    np.minimum.at(room, number, obstacles.rooms([way for _, way in named], own, within))
+    return [
+        float(far) if far > least and one.leaves else None for far, (one, _) in zip(room.tolist(), every, strict=True)
     ]
-    number, ending = np.array([one for one, _ in named], dtype=np.int64), [way for _, way in named]
-    look, room = np.zeros(len(ways)), np.full(len(ways), np.inf)
-    np.maximum.at(look, number, np.array([length(way) for way in ending]))
-    own = np.array(owns, dtype=np.int64)[number]
-    np.minimum.at(room, number, obstacles.rooms(ending, own, least + look[number]))
-    free = room > least
-    np.logical_and.at(free, number, obstacles.leave(ending, own))
-    return [float(one) if is_free else None for one, is_free in zip(room, free, strict=True)]

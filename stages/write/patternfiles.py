@@ -21,15 +21,9 @@ from stages.model.pattern import Contour, FlatPattern
 from stages.model.patternlayers import CURVE, DRILL, NOTCH_LAYERS, TURN
 from stages.model.report import Finding, StageReport
 from stages.model.sheet import SheetLayout
-from stages.write.compare import (
-    GRID_SHARE,
-    Comparison,
-    ContourFigures,
-    contour_figures,
-    cut_figures,
-    metrics,
-)
+from stages.write.compare import GRID_SHARE, Comparison, ContourFigures, contour_figures, metrics
 from stages.write.contourfigures import measured_file
+from stages.write.cutfigures import cut_figures
 from stages.write.faults import faults
 from stages.write.piececompare import unlike
 from stages.write.piecedxf import pieces_text

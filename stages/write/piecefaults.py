@@ -8,7 +8,7 @@ outline and points inward, a drill hole within it; the texts have their keys, an
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from math import cos, radians, sin
+from math import cos, isfinite, radians, sin
 
 import numpy as np
 from shapely import Point, Polygon
@@ -39,7 +39,7 @@ STEP_MM = 1e-3
 """How far along its direction a notch is followed to see whether that leads into the piece."""
 
 FALLBACK_MM = 0.0
-"""The tolerance of a file that states none: its validation curves must be its lines."""
+"""The tolerance of a file that states none, or no number: its validation curves must be its lines."""
 
 TWO_CURVES = 2.0
 """A line and its validation curve are each within the tolerance of the exact curve."""
@@ -115,9 +115,10 @@ def _style(file: ReadPieces) -> Iterator[Fault]:
 def _tolerance(file: ReadPieces) -> float:
     """Return the tolerance of curves that the style states, mm."""
     try:
-        return float(_keys(file.space).get("Curve Tolerance", FALLBACK_MM))
+        stated = float(_keys(file.space).get("Curve Tolerance", FALLBACK_MM))
     except ValueError:
         return FALLBACK_MM
+    return stated if isfinite(stated) else FALLBACK_MM
 
 
 def _piece_keys(block: Content) -> Iterator[Fault]:

@@ -78,6 +78,11 @@ def _read(text: str, named: tuple[tuple[str, Layer], ...]) -> ReadFile:
     return ReadFile(_header(document), entities, _colours(document, layers), tuple(complaints), version)
 
 
+def forget() -> None:
+    """Read again what has been read: for who measures how long that takes."""
+    _read.cache_clear()
+
+
 def _meant(entities: Sequence[Entity], layers: Mapping[str, Layer]) -> list[Entity]:
     """Return entities on the layers that their layers' names mean, and their colours where several share a name."""
     meaning = {said: _meaning(*said, layers) for said in {(one.layer, one.colour) for one in entities}}
@@ -117,23 +122,29 @@ def _header(document: Document) -> dict[str, object]:
 
 def _entity(entity: DXFEntity) -> Entity:
     """Return one entity with its path, if it is a line, an arc, a polyline or a circle."""
-    # colour 256: as the layer
-    own = Entity(entity.dxftype(), str(entity.dxf.layer), int(entity.dxf.get("color", 256)), None, closed=False)
     if isinstance(entity, LWPolyline):
-        points = np.array(entity.get_points("xyb"), dtype=np.float64).reshape(-1, 3)
-        return _polyline(own, points, closed=bool(entity.closed))
-    if isinstance(entity, Polyline) and not int(entity.dxf.flags) & ~MOST_FLAGS:
-        corners = [(corner.dxf.location.x, corner.dxf.location.y, corner.dxf.bulge) for corner in entity.vertices]
-        return _polyline(own, np.array(corners, dtype=np.float64).reshape(-1, 3), closed=bool(entity.is_closed))
+        # x, y, two widths, bulge
+        points = np.asarray(entity.lwpoints.values, dtype=np.float64)[:, [0, 1, 4]]
+        return _found(entity, _polyline(points, closed=bool(entity.closed)), closed=bool(entity.closed))
+    if isinstance(entity, Polyline) and is_plain(entity):
+        return _found(entity, old_path(entity), closed=bool(entity.is_closed))
     # an arc is a circle to the library
     if isinstance(entity, Arc):
-        return replace(own, path=_arc(entity), begins=entity.dxf.hasattr("linetype"))
+        return _found(entity, _arc(entity))
     if isinstance(entity, Circle):
-        return replace(own, path=_circle(entity), closed=True)
+        return _found(entity, _circle(entity), closed=True)
     if isinstance(entity, Line):
         ends = [(end.x, end.y) for end in (entity.dxf.start, entity.dxf.end)]
-        return replace(own, path=_path(ends, [0.0, 0.0], closed=False), begins=entity.dxf.hasattr("linetype"))
-    return replace(own, writing=_writing(entity) if isinstance(entity, Text) else None)
+        return _found(entity, _path(ends, [0.0, 0.0], closed=False))
+    return _found(entity, None, writing=_writing(entity) if isinstance(entity, Text) else None)
+
+
+def _found(entity: DXFEntity, path: ArcPath | None, *, closed: bool = False, writing: Writing | None = None) -> Entity:
+    """Return an entity with what it is; a piece that names its line type begins a path."""
+    dxf = entity.dxf
+    begins = isinstance(entity, Arc | Line) and dxf.hasattr("linetype")
+    # colour 256: as the layer
+    return Entity(entity.dxftype(), str(dxf.layer), int(dxf.get("color", 256)), path, closed, writing, begins)
 
 
 def _writing(entity: Text) -> Writing:
@@ -142,11 +153,22 @@ def _writing(entity: Text) -> Writing:
     return Writing(str(entity.dxf.text), at.x, at.y, float(entity.dxf.height), float(entity.dxf.rotation))
 
 
-def _polyline(entity: Entity, points: Points3, *, closed: bool) -> Entity:
-    """Return a polyline of x, y and bulge; without a path if it has fewer than two vertices."""
+def is_plain(entity: Polyline) -> bool:
+    """Return whether an old polyline is one in the plane, neither smoothed nor a mesh."""
+    return not int(entity.dxf.flags) & ~MOST_FLAGS
+
+
+def old_path(entity: Polyline) -> ArcPath | None:
+    """Return the path of an old polyline; none if it has fewer than two vertices."""
+    corners = [(corner.dxf.location.x, corner.dxf.location.y, corner.dxf.bulge) for corner in entity.vertices]
+    return _polyline(np.array(corners, dtype=np.float64).reshape(-1, 3), closed=bool(entity.is_closed))
+
+
+def _polyline(points: Points3, *, closed: bool) -> ArcPath | None:
+    """Return the path of a polyline of x, y and bulge; none if it has fewer than two vertices."""
     if points.shape[0] < 2:  # noqa: PLR2004  no path
-        return replace(entity, closed=closed)
-    return replace(entity, path=_path(points[:, :2], points[:, 2], closed=closed), closed=closed)
+        return None
+    return _path(points[:, :2], points[:, 2], closed=closed)
 
 
 def _arc(entity: Arc) -> ArcPath:

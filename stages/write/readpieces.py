@@ -20,10 +20,9 @@ from ezdxf.filemanagement import read as read_dxf
 from ezdxf.lldxf.const import DXFError
 
 from stages.geometry.arcpath import ArcPath
+from stages.write.readback import is_plain, old_path
 
 LAYOUTS = ("*MODEL_SPACE", "*PAPER_SPACE", "$MODEL_SPACE", "$PAPER_SPACE")
-MOST_FLAGS = 1 + 128
-"""A plain polyline in the plane is closed or not, and may say that its line type runs on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,14 +139,9 @@ def _line(entity: DXFEntity) -> ReadLine | None:
     if isinstance(entity, Line):
         ends = np.array([(end.x, end.y) for end in (entity.dxf.start, entity.dxf.end)])
         return ReadLine(str(entity.dxf.layer), ArcPath(ends, np.zeros(2), closed=False))
-    if not isinstance(entity, Polyline) or int(entity.dxf.flags) & ~MOST_FLAGS:
+    if not isinstance(entity, Polyline) or not is_plain(entity):
         return None
-    corners = [(corner.dxf.location.x, corner.dxf.location.y, corner.dxf.bulge) for corner in entity.vertices]
-    if len(corners) < 2:  # noqa: PLR2004  no path
-        return ReadLine(str(entity.dxf.layer), None)
-    points, closed = np.array(corners, dtype=np.float64), bool(entity.is_closed)
-    bulges = points[:, 2] if closed else np.append(points[:-1, 2], 0.0)
-    return ReadLine(str(entity.dxf.layer), ArcPath(points[:, :2], bulges, closed))
+    return ReadLine(str(entity.dxf.layer), old_path(entity))
 
 
 def _point(entity: Point) -> ReadPoint:

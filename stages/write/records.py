@@ -88,9 +88,9 @@ def _circle(x: float, y: float, radius: float) -> str:
 
 def _corners(path: ArcPath) -> Iterator[tuple[float, float, str]]:
     """Yield x, y and the tag of the bulge of each vertex, which is left out where it is 0."""
-    x, y = rounded(path.vertices[:, 0], DECIMALS), rounded(path.vertices[:, 1], DECIMALS)
-    for at_x, at_y, bulge in zip(x, y, rounded(path.bulges, BULGE_DECIMALS), strict=True):
-        yield at_x, at_y, f" 42\n{bulge}\n" if bulge else ""
+    places, bulges = rounded(path.vertices.ravel(), DECIMALS), rounded(path.bulges, BULGE_DECIMALS)
+    for x, y, bulge in zip(places[::2], places[1::2], bulges, strict=True):
+        yield x, y, f" 42\n{bulge}\n" if bulge else ""
 
 
 def _polyline(path: ArcPath, layer: Layer, form: Form) -> Iterator[str]:

@@ -8,10 +8,12 @@ lies in a hole comes before that hole.
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from shapely import Polygon, STRtree, prepare
+from numpy.typing import NDArray
+from shapely import Polygon, STRtree, buffer, contains, linearrings, polygons, prepare
 
+from stages.geometry import manypaths
 from stages.geometry.arcpath import ArcPath, polygon
-from stages.geometry.arrays import Array
+from stages.geometry.arrays import Array, Mask
 from stages.write.chains import Entity
 from stages.write.closing import Closed, Outline
 
@@ -28,30 +30,59 @@ def order_faults(entities: Sequence[Entity], beside_mm: float) -> Iterator[str]:
 
     beside_mm: how far a mark or hole may reach beyond its outline and still belong to it.
     """
-    group: list[Entity] = []
-    for entity in entities:
-        if entity.layer in RANK:
-            group.append(entity)
+    ranked = [entity for entity in entities if entity.layer in RANK]
+    group: list[tuple[Entity, bool]] = []
+    for entity, is_held in zip(ranked, _held(ranked, beside_mm).tolist(), strict=True):
+        group.append((entity, is_held))
         if entity.layer == "CUT_OUTER":
-            yield from _group_order(group, beside_mm)
+            yield from _group_order(group)
             group = []
     if group:
         yield f"{len(group)} marks or holes come after the last outline"
 
 
-def _group_order(group: Sequence[Entity], beside_mm: float) -> Iterator[str]:
-    """Yield what is out of order among the paths that end with one outline."""
-    ranks = [RANK[entity.layer] for entity in group]
+def _group_order(group: Sequence[tuple[Entity, bool]]) -> Iterator[str]:
+    """Yield what is out of order among the paths that end with one outline, each with whether that holds it."""
+    ranks = [RANK[entity.layer] for entity, _ in group]
     if ranks != sorted(ranks):
         yield MARKS_FIRST
-    path = group[-1].path
-    if path is None:
-        return
-    outline = _region(path).buffer(beside_mm)
-    prepare(outline)
-    for entity in group[:-1]:
-        if entity.path is not None and not outline.contains(Polygon(_ring(entity.path))):
+    for entity, is_held in group[:-1]:
+        if not is_held:
             yield f"{entity.kind} on {entity.layer} comes before an outline that does not hold it"
+
+
+def _held(entities: Sequence[Entity], beside_mm: float) -> Mask:
+    """Return which paths the next outline in their order holds; what is no path counts as held."""
+    outlines = np.flatnonzero([entity.layer == "CUT_OUTER" for entity in entities])
+    known = np.array([entity.path is not None for entity in entities], dtype=bool)
+    held = np.ones(len(entities), dtype=bool)
+    if not outlines.size or not known.any():
+        return held
+    shapes = np.full(len(entities), None, dtype=object)
+    shapes[known] = _shapes([entity.path for entity in entities if entity.path is not None])
+    inner = np.setdiff1d(np.arange(int(outlines[-1])), outlines)
+    owner = outlines[np.searchsorted(outlines, inner)]
+    both = known[inner] & known[owner]
+    inner, around = inner[both], shapes[owner[both]]
+    prepare(around)
+    held[inner] = contains(around, shapes[inner])
+    # few reach beyond their outlines
+    beyond = ~held[inner]
+    held[inner[beyond]] = contains(buffer(around[beyond], beside_mm), shapes[inner[beyond]])
+    return held
+
+
+def _shapes(paths: Sequence[ArcPath]) -> NDArray[np.object_]:
+    """Return polygons that stand for paths; an open one runs there and back."""
+    points, owner = manypaths.polygons(paths, POLYGON_MM)
+    count = np.bincount(owner, minlength=len(paths))
+    closed = np.array([path.closed for path in paths]) & (count > 2)  # noqa: PLR2004  two points enclose nothing
+    longer = np.where(closed, count, 2 * count)
+    ring = np.repeat(np.arange(count.size), longer)
+    within = np.arange(ring.size) - np.repeat(np.cumsum(longer) - longer, longer)
+    back = np.where(within < count[ring], within, 2 * count[ring] - 1 - within)
+    made: NDArray[np.object_] = polygons(linearrings(points[(np.cumsum(count) - count)[ring] + back], indices=ring))
+    return made
 
 
 def shared_order_faults(entities: Sequence[Entity], closed: Closed, beside_mm: float) -> Iterator[str]:

@@ -81,7 +81,8 @@ def _moved(drawing: Drawing, shift: float) -> Drawing:
 
 def _item_moved(item: Item, shift: float) -> Item:
     nominal = None if item.nominal is None else _shifted(item.nominal, shift)
-    return replace(item, path=_shifted(item.path, shift), nominal=nominal)
+    motion = item.motion.replace(x=item.motion.x + shift)
+    return replace(item, path=_shifted(item.path, shift), nominal=nominal, motion=motion)
 
 
 def _united(drawings: Sequence[Drawing]) -> Drawing:

@@ -12,6 +12,9 @@ TENS, LARGE = 10.0, 1000.0
 FAR = 1e6
 """From here on with an exponent, if they are not whole."""
 
+LONGER = "## Longer runs"
+"""Over the rows of a page that a run of the benchmark leaves as they are."""
+
 
 class Heading(NamedTuple):
     """Where and when a run was made."""
@@ -71,6 +74,12 @@ def _columns(section: Section) -> str:
 def as_markdown(heading: Heading, sections: Sequence[Section]) -> str:
     """Return the page of all sections; every row has an anchor, by which other pages refer to it."""
     return "\n".join(["# Benchmarks", "", *_told(heading), "", *(line for one in sections for line in _section(one))])
+
+
+def longer(page: str) -> str:
+    """Return the end of a page that holds what other commands measured; nothing where it has none."""
+    _, mark, rest = page.partition(f"\n{LONGER}\n")
+    return f"{mark}{rest}"
 
 
 def _section(section: Section) -> Iterable[str]:

@@ -7,7 +7,7 @@ import pytest
 from tests.bench.__main__ import parsed
 from tests.bench.rows import Asked, Row, Section, identity
 from tests.bench.sections import alone, section
-from tests.bench.tables import HEADS, Heading, as_markdown, as_text, cells, number
+from tests.bench.tables import HEADS, Heading, as_markdown, as_text, cells, longer, number
 
 ROW = Row("right cone", "128 rulings", "triangle strip", "1.2", 1.6e-05, "of the size", 0.0123, 4.6, "median of 5")
 HEAD = Heading("2026-01-02", "a machine", "2 cores, load 0.1 before", "planish 0.1.0.", "Usual sizes", 9.6)
@@ -86,3 +86,11 @@ def test_a_page_of_a_part_of_the_topics_is_refused(capsys: pytest.CaptureFixture
         with pytest.raises(SystemExit):
             parsed(words)
         assert "--write keeps one run of all topics" in capsys.readouterr().err
+
+
+def test_what_other_commands_measured_stays_on_the_page() -> None:
+    page = as_markdown(HEAD, [Section("unroll", "far from exact", (ROW,))])
+    assert longer(page) == ""
+    assert longer("") == ""
+    end = "\n## Longer runs\n\n| a | 1 s |\n"
+    assert longer(page + end) == end

@@ -150,6 +150,36 @@ def test_a_click_on_a_sheet_opens_the_part(page: Page) -> None:
         assert page.ask("byId('part-title').textContent") == name
 
 
+def test_what_is_not_all_is_not_shown_as_all(page: Page) -> None:
+    assert page.ask("[0.9996, 1, 0.12345].map(percent)") == ["99.9\u00a0%", "100\u00a0%", "12.3\u00a0%"]
+    assert page.ask("shown(-1.5e-7)") == "\u22121.5e\u22127"
+
+
+WRITTEN = """(() => { const said = [], none = () => {};
+  const bar = { closed: true, points: [0, 0, 0, 100, 0, 0, 100, 10, 0, 0, 10, 0] };
+  const context = { strokeText: (text) => said.push(text) };
+  for (const name of ['beginPath', 'moveTo', 'lineTo', 'closePath', 'fill', 'stroke', 'fillText']) context[name] = none;
+  for (const angle of [0, 90]) drawCopy({ context, place: (x, y) => [x, -y], k: 1 }, { index: 0, contours: [bar],
+    label: [50, 5], placement: { part: 'bar', copy: angle, angle, mirrored: false }, move: (x, y) => [x, y] }, false);
+  return said; })()"""
+
+
+def test_a_name_that_is_wider_than_its_copy_as_it_lies_is_left_out(page: Page) -> None:
+    assert page.ask(WRITTEN) == ["bar 0"]
+
+
+def test_money_has_two_decimals(page: Page) -> None:
+    sheet = "showSheet({ ...report.nest.sheets[0], cost: %s }, 0).box.textContent"
+    assert "Cost81.40" in str(page.ask(sheet % "81.40000000000001"))
+    assert "Cost" not in str(page.ask(sheet % "null"))
+
+
+def test_beyond_a_round_number_is_beyond_no_limit(page: Page) -> None:
+    field = "{ title: 't', evidence: 'sampled', limit: 1, held: %s, at: () => 2 }"
+    said = [page.ask(f"flatWords({{ field: {field % held}, flat: {{ rulings: [] }} }}, [0, 0])") for held in (0, 1)]
+    assert [str(words).rpartition(" ")[2] for words in said] == ["scale", "limit"]
+
+
 def test_it_turns_dark_and_is_narrow(page: Page) -> None:
     go(page, HOSTILE)
     was = page.ask("document.documentElement.dataset.theme")

@@ -114,6 +114,7 @@ def test_parts_with_leads_and_tabs_take_what_their_paths_in_the_files_take() -> 
     square, holed = costs([layout()], PATTERNS, [CUTS], RATES, one).parts
     assert square.cuts == Cuts(2.0 * 409.0, 8)
     assert holed.cuts.pierces == 2, "no helps in the files: its contours"
+    assert costs([layout()], PATTERNS, [CUTS], RATES, {"square": UNKNOWN}).parts[0].cuts == UNKNOWN
     assert cuts_of_copies(StageReport("write", "x")) == {}
 
 
@@ -126,6 +127,7 @@ def test_parts_with_leads_and_tabs_take_what_their_paths_in_the_files_take() -> 
         ),
         (reckoned(layout(), rates=Rates()), "price 20.00, cut 1.326 m, 4 pierces, time not known (speed and pierce_"),
         (reckoned(layout(SHEET.replace(price=None))), "price not known (price under [[stock]])"),
+        (costs([layout()], PATTERNS, [Cuts(1.0, 1.0)], RATES), "cut 0.001 m, 1 pierce, time"),
     ],
 )
 def test_the_terminal_says_the_cost_and_what_is_not_known(made: Costs, words: str) -> None:

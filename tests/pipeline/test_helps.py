@@ -117,6 +117,18 @@ def test_a_job_without_stock_says_that_they_do_nothing(tmp_path: Path) -> None:
     assert any("[[stock]]" in note for note in result.job.notes)
 
 
+@pytest.mark.parametrize("helps", ['lead_in = { kind = "arc", radius = 1.5 }', "tabs = { count = 2, width = 0.4 }"])
+def test_a_width_of_the_cut_that_is_not_known_is_told_where_it_counts(tmp_path: Path, helps: str) -> None:
+    told = [
+        [note for note in job_of(read(path, (), lambda _: None)).notes if "width of the cut" in note]
+        for path in (
+            write_job(tmp_path, f"{PLATE}{SHEET}[process]\n{known}{text}\n")
+            for known, text in (("", helps), ("kerf = 0.2\n", helps), ('type = "laser"\n', helps), ("", "start = 0.5"))
+        )
+    ]
+    assert [len(notes) for notes in told] == [1, 0, 0, 0]
+
+
 def test_the_report_tells_them_and_reads_back(tmp_path: Path) -> None:
     result = made(tmp_path, SHEET + ALL)
     report = json.loads(outputs(result)[1]["report.json"])

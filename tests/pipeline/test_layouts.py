@@ -193,6 +193,15 @@ def test_sheets_on_which_nothing_stays_go_and_the_others_move_up(tmp_path: Path,
     assert summary(left) == f"{file}: 6 copies lie on its sheets, 5 that are not fixed are placed anew"
 
 
+def test_sheets_of_a_stock_go_by_their_numbers_in_whatever_order_the_file_has_them(
+    tmp_path: Path, job: Job, made: Layout
+) -> None:
+    assert len(sheets_of(made)) > 1
+    wanted = rows(made)
+    sheets_of(made).reverse()
+    assert rows(layout_of(run_job(with_layout(job, stored(tmp_path, made))))) == wanted
+
+
 ELBOW = """\
 [[part]]
 name = "bend"

@@ -21,7 +21,7 @@ def test_a_path_is_written_and_read(text: str, path: Path) -> None:
     assert written(path) == text
 
 
-@pytest.mark.parametrize("text", ["a..b", ".a", "a b", "a[", "a[-1]", 'a"b"', "a."])
+@pytest.mark.parametrize("text", ["a..b", ".a", "a b", "a[", "a[-1]", 'a"b"', "a.", r'"\q"', '"a\tb"', r'"\u12"', '"'])
 def test_what_is_no_path_is_none(text: str) -> None:
     assert parsed(text) is None
 

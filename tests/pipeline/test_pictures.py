@@ -1,3 +1,5 @@
+"""Pictures of parts and sheets: what is seen on them, the same bytes for the same part, names as they are."""
+
 import json
 from collections.abc import Mapping
 from fractions import Fraction

@@ -42,6 +42,15 @@ edge_gap = 10
 """
 
 
+COARSE = (
+    "part[0].stitch[0].pitch=16",
+    *(f"part[0].stitch[{i}].{key}" for i in (1, 2) for key in ("pitch=16", "pitch_range=[14, 18]")),
+    "part[1].stitch[0].pitch=16",
+    "part[2].stitch[0].pitch=16",
+)
+"""A quarter of the stitches of the sample: what is asked of each is the same, and each takes its time."""
+
+
 class Pooled:
     """What the command left: the report, the side file and the entities of the one sheet; and the parts as made."""
 
@@ -71,7 +80,7 @@ class Pooled:
 def pooled(tmp_path_factory: pytest.TempPathFactory) -> Pooled:
     """Return what becomes of two finished jobs."""
     below = tmp_path_factory.mktemp("bags")
-    job = replace(job_of(read_job(SAMPLES / "bag" / "sewn.toml", ["report.formats=['json']"])), stock=())
+    job = replace(job_of(read_job(SAMPLES / "bag" / "sewn.toml", ["report.formats=['json']", *COARSE])), stock=())
     result = run_job(job)
     for name in JOBS:
         write_files(below / name, outputs(result)[1])
@@ -106,7 +115,7 @@ def test_every_hole_of_every_piece_is_cut_for_its_purpose(pooled: Pooled) -> Non
                 stitched += 1
                 assert_near(row["circle"][2], 1.0, bound=1e-9, why="the diameter of the job")
     holes = sum(hole.purpose == "stitch" for _, pattern, _ in pooled.copies() for hole in pattern.inner)
-    assert stitched == holes >= 2 * 944, "rows of 89, 62 and 23 on all sides of the seams of a bag, and more"
+    assert stitched == holes >= 2 * 230, "rows on all sides of the seams of a bag"
 
 
 def test_every_outline_is_cut_with_its_notches(pooled: Pooled) -> None:

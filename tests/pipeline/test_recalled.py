@@ -137,11 +137,14 @@ def job(folder: Path, flavour: Flavour, change: Callable[[dict[str, bytes]], Non
     return finished(folder)
 
 
-def pooled(folder: Path, flavour: Flavour, into: Flavour) -> Pool:
-    stock = folder / "stock.toml"
-    stock.write_text(STOCK.format(flavour=into), "utf-8")
-    (folder / "out").mkdir()
-    return pool([job(folder / "out", flavour)], supply_of(stock))
+@cache
+def pooled(flavour: Flavour, into: Flavour) -> Pool:
+    with TemporaryDirectory() as below:
+        folder = Path(below)
+        stock = folder / "stock.toml"
+        stock.write_text(STOCK.format(flavour=into), "utf-8")
+        (folder / "out").mkdir()
+        return pool([job(folder / "out", flavour)], supply_of(stock))
 
 
 def pattern_of(result: Pool) -> FlatPattern:
@@ -158,8 +161,8 @@ def purposes(pattern: FlatPattern) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
 @pytest.mark.parametrize("into", ["polyline-arcs", "aama"])
-def test_holes_and_notches_are_what_they_were(tmp_path: Path, flavour: Flavour, into: Flavour) -> None:
-    wanted, found = original(flavour), pattern_of(pooled(tmp_path, flavour, into))
+def test_holes_and_notches_are_what_they_were(flavour: Flavour, into: Flavour) -> None:
+    wanted, found = original(flavour), pattern_of(pooled(flavour, into))
     assert len(purposes(wanted)) > 30
     assert purposes(found) == purposes(wanted)
     assert [(one.name, one.kind, one.in_outline, one.is_cut) for one in found.notches] == [
@@ -175,9 +178,9 @@ def test_holes_and_notches_are_what_they_were(tmp_path: Path, flavour: Flavour, 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
 @pytest.mark.parametrize("into", ["polyline-arcs", "polylines"])
-def test_what_is_cut_has_the_size_of_the_development(tmp_path: Path, flavour: Flavour, into: Flavour) -> None:
+def test_what_is_cut_has_the_size_of_the_development(flavour: Flavour, into: Flavour) -> None:
     """An outline within the chord of the exact one encloses no more or less than the chord times its length."""
-    exact, found = original("polyline-arcs"), pattern_of(pooled(tmp_path, flavour, into))
+    exact, found = original("polyline-arcs"), pattern_of(pooled(flavour, into))
     around = length(exact.outer.path)
     allowed = CHORD_MM * around + TURNED_MM2
     assert_near(area(found.outer.path), area(exact.outer.path), bound=allowed, why="chords of the tolerance")
@@ -192,8 +195,8 @@ TURNED_MM2 = 2.0 * 3.0 * 3.0 * 0.05
 
 
 @pytest.mark.parametrize("flavour", ["polyline-arcs", "r12", "polylines"])
-def test_a_pattern_file_of_a_pool_says_them_by_points(tmp_path: Path, flavour: Flavour) -> None:
-    ((_, made),) = pooled(tmp_path, flavour, "aama").results
+def test_a_pattern_file_of_a_pool_says_them_by_points(flavour: Flavour) -> None:
+    ((_, made),) = pooled(flavour, "aama").results
     text = next(file.text for file in made.write.product or () if file.path.startswith("cut/"))
     (block,) = read_pieces(text).blocks
     layers = [point.layer for point in block.points]

@@ -2,10 +2,12 @@
 
 import json
 import math
+from functools import cache
 from hashlib import sha256
 from importlib.resources import files
 from math import pi
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import jsonschema
 import numpy as np
@@ -22,15 +24,23 @@ from tests.pipeline.jobs import CONE, PLATE, STOCK, TWISTED, write_job
 STEEL = '[material]\nname = "mild steel"\nthickness = 2\n'
 
 
-def made(folder: Path, text: str) -> tuple[dict[str, object], dict[str, bytes]]:
-    """Return the report as JSON reads it, and all files."""
-    if "fine.ply" in text:
-        import trimesh
+@cache
+def files_of(text: str) -> dict[str, bytes]:
+    """Return all files of a job, which is run once."""
+    with TemporaryDirectory() as below:
+        folder = Path(below)
+        if "fine.ply" in text:
+            import trimesh
 
-        mesh = cylinder(0, 80, 24).mesh
-        trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(folder / "fine.ply")
-    _, produced = outputs(run_job(job_of(read(write_job(folder, text)))))
-    return json.loads(produced["report.json"]), produced
+            mesh = cylinder(0, 80, 24).mesh
+            trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(folder / "fine.ply")
+        return outputs(run_job(job_of(read(write_job(folder, text)))))[1]
+
+
+def made(text: str) -> tuple[dict[str, object], dict[str, bytes]]:
+    """Return the report as JSON reads it, and all files."""
+    produced = files_of(text)
+    return json.loads(produced["report.json"]), dict(produced)
 
 
 def entry(report: dict[str, object], *path: str | int) -> object:
@@ -68,9 +78,9 @@ JOBS = {
 
 
 @pytest.mark.parametrize("name", JOBS)
-def test_a_report_keeps_its_schema(tmp_path: Path, name: str) -> None:
+def test_a_report_keeps_its_schema(name: str) -> None:
     schema = json.loads(files("pipeline").joinpath("data", "report-schema.json").read_text("utf-8"))
-    report, _ = made(tmp_path, JOBS[name])
+    report, _ = made(JOBS[name])
     jsonschema.Draft202012Validator(schema).validate(report)
     assert list(report) == schema["required"]
 
@@ -85,11 +95,9 @@ def test_a_report_keeps_its_schema(tmp_path: Path, name: str) -> None:
         ("by least strain", 2, {"strain_field"}),
     ],
 )
-def test_what_the_schema_describes_is_what_the_stages_say(
-    tmp_path: Path, name: str, stage: int, told: set[str]
-) -> None:
+def test_what_the_schema_describes_is_what_the_stages_say(name: str, stage: int, told: set[str]) -> None:
     schema = json.loads(files("pipeline").joinpath("data", "report-schema.json").read_text("utf-8"))
-    report, _ = made(tmp_path, JOBS[name])
+    report, _ = made(JOBS[name])
     detail = entry(report, "parts", -1, "stages", stage, "detail")
     assert isinstance(detail, dict)
     assert told <= set(detail)
@@ -107,8 +115,8 @@ def test_what_the_schema_describes_is_what_the_stages_say(
         ("too large", ["no-solution", "fail", "skipped"], {"flat/plate.dxf"}),
     ],
 )
-def test_status_and_files_agree(tmp_path: Path, name: str, statuses: list[str], files: set[str]) -> None:
-    report, produced = made(tmp_path, JOBS[name])
+def test_status_and_files_agree(name: str, statuses: list[str], files: set[str]) -> None:
+    report, produced = made(JOBS[name])
     assert [report["status"], entry(report, "nest", "status"), entry(report, "write", "status")] == statuses
     drawings = [path for path in produced if path.endswith(".dxf")]
     assert set(produced) == {"report.json", *files, *(path.replace(".dxf", ".json") for path in drawings)}
@@ -116,9 +124,9 @@ def test_status_and_files_agree(tmp_path: Path, name: str, statuses: list[str], 
     assert listed == [{"path": path, "sha256": sha256(produced[path]).hexdigest()} for path in drawings]
 
 
-def test_mass_cut_length_and_pierces_have_closed_forms(tmp_path: Path) -> None:
+def test_mass_cut_length_and_pierces_have_closed_forms() -> None:
     hole = "holes = [{ circle = { center = [20, 15], radius = 5 } }]\n"
-    report, _ = made(tmp_path, PLATE + hole + STOCK + STEEL)
+    report, _ = made(PLATE + hole + STOCK + STEEL)
     part = entry(report, "parts", 0)
     assert isinstance(part, dict)
     area = 40 * 30 - 25 * pi
@@ -130,8 +138,8 @@ def test_mass_cut_length_and_pierces_have_closed_forms(tmp_path: Path) -> None:
     assert (sheet["mass_kg"], sheet["pierces"], sheet["cost"]) == (part["mass_kg"], 2, 12.5)
 
 
-def test_the_figures_of_a_sheet_are_those_of_all_its_parts(tmp_path: Path) -> None:
-    report, _ = made(tmp_path, PLATE.replace('"plate"', '"plate"\nquantity = 2') + STOCK + STEEL)
+def test_the_figures_of_a_sheet_are_those_of_all_its_parts() -> None:
+    report, _ = made(PLATE.replace('"plate"', '"plate"\nquantity = 2') + STOCK + STEEL)
     assert entry(report, "nest", "sheets", 0, "pierces") == 2
     assert entry(report, "nest", "sheets", 0, "cut_length_mm") == pytest.approx(280, rel=1e-12)
     placed = entry(report, "nest", "sheets", 0, "placements")
@@ -139,13 +147,13 @@ def test_the_figures_of_a_sheet_are_those_of_all_its_parts(tmp_path: Path) -> No
     assert [(row["part"], row["copy"]) for row in placed] == [("plate", 1), ("plate", 2)]
 
 
-def test_mass_is_null_where_thickness_is_not_known(tmp_path: Path) -> None:
-    report, _ = made(tmp_path, PLATE)
+def test_mass_is_null_where_thickness_is_not_known() -> None:
+    report, _ = made(PLATE)
     assert entry(report, "parts", 0, "mass_kg") is None
 
 
-def test_names_that_no_file_system_takes_stay_in_the_report_and_leave_the_files(tmp_path: Path) -> None:
-    report, produced = made(tmp_path, PLATE.replace('"plate"', '"../Bö/ß"') + STOCK.replace('"sheet"', '"S/1"'))
+def test_names_that_no_file_system_takes_stay_in_the_report_and_leave_the_files() -> None:
+    report, produced = made(PLATE.replace('"plate"', '"../Bö/ß"') + STOCK.replace('"sheet"', '"S/1"'))
     assert entry(report, "parts", 0, "name") == "../Bö/ß"
     assert entry(report, "nest", "sheets", 0, "stock") == "S/1"
     assert entry(report, "nest", "sheets", 0, "file") == "cut/S-1-1.dxf"
@@ -169,8 +177,8 @@ directrix = { polyline = [[10, 0, 0], [5, 5, 8], [0, 10, 0], [-5, 5, -8], [-10, 
 """A cone of 496 deg: two blanks."""
 
 
-def test_a_divided_part_has_an_entry_and_a_drawing_for_each_blank(tmp_path: Path) -> None:
-    report, produced = made(tmp_path, PLATE + STOCK + WOUND)
+def test_a_divided_part_has_an_entry_and_a_drawing_for_each_blank() -> None:
+    report, produced = made(PLATE + STOCK + WOUND)
     assert report["status"] == "made"
     parts = report["parts"]
     assert isinstance(parts, list)
@@ -192,9 +200,9 @@ def sin_of_a_triangle() -> float:
     return float((1.0 - cosine**2) ** 0.5)
 
 
-def test_the_same_job_gives_the_same_bytes_but_for_run(tmp_path: Path) -> None:
+def test_the_same_job_gives_the_same_bytes_but_for_run() -> None:
     text = JOBS["nested"]
-    (first, one), (second, two) = made(tmp_path, text), made(tmp_path, "# a remark\n" + text)
+    (first, one), (second, two) = made(text), made("# a remark\n" + text)
     assert first.pop("run") != second.pop("run")
     assert encoded(first) == encoded(second)
     assert {name: one[name] for name in one if name != "report.json"} == {
@@ -202,9 +210,9 @@ def test_the_same_job_gives_the_same_bytes_but_for_run(tmp_path: Path) -> None:
     }
 
 
-def test_the_digest_sees_every_value(tmp_path: Path) -> None:
-    one, _ = made(tmp_path, PLATE)
-    two, _ = made(tmp_path, PLATE.replace("[40, 30]", "[40, 30.000000001]"))
+def test_the_digest_sees_every_value() -> None:
+    one, _ = made(PLATE)
+    two, _ = made(PLATE.replace("[40, 30]", "[40, 30.000000001]"))
     assert entry(one, "job", "digest") != entry(two, "job", "digest")
 
 

@@ -183,6 +183,8 @@ def test_classes_statuses_findings_settings_and_drawings_are_compared() -> None:
     assert (found.stage, found.metric, found.a, found.b, found.present) == ("write", "finding c", None, "m", "b")
     (limit,) = compare(report, changed(report, 0.5, "job", "tolerance", "chord_mm")).changes
     assert (limit.stage, limit.metric, limit.b) == ("job", "tolerance.chord_mm", 0.5)
+    (named,) = compare(report, changed(report, "fox", "job", "customer")).changes
+    assert (named.a, named.b, named.present) == (None, "fox", "both"), "said by both, known to one"
     drawn = compare(report, changed(report, "0" * 64, "write", "files", 0, "sha256"))
     assert [change for _, change in drawn.files] == ["changed"]
     assert not drawn.changes

@@ -123,6 +123,28 @@ def test_ends_that_leave_no_room_are_told(ends: list[int]) -> None:
     assert fractions(stitch(pitch=4, ends=ends), 100.0) is None
 
 
+def test_more_stitches_than_anyone_sews_are_refused_before_they_are_made() -> None:
+    fine = part("body", {"edge": "c0"}, stitch=[{"seam": "c0", "pitch": 0.0001, "diameter": 1}])
+    (group,) = groups([fine])
+    made = divided(group, {"body.c0": 100.0})
+    assert made.rows == ()
+    ((name, found),) = made.findings
+    assert (name, found.code, found.fatal) == ("body", "stitch-too-many", True)
+    assert "1e+06 of them on 100 mm" in found.message
+
+
+def test_stitch_holes_that_run_into_each_other_are_refused_on_the_side_where_they_do() -> None:
+    two = [part("body", {"edge": "c0"}, stitch=[{"seam": "c0", "pitch": 4, "diameter": 1}]),
+           part("base", {"edge": "c1", "mate": "body.c0"})]  # fmt: skip
+    (group,) = groups(two)
+    near = divided(group, {"body.c0": 100.0, "base.c1": 30.0})
+    assert not near.findings
+    made = divided(group, {"body.c0": 100.0, "base.c1": 10.0})
+    assert made.rows == ()
+    ((name, found),) = made.findings
+    assert (name, found.code, found.fatal) == ("base", "stitch-overlap", True)
+
+
 def test_lengths_are_compared_with_the_mate_and_limited_by_the_class_or_the_seam() -> None:
     back = groups([BODY, GUSSET, BASE])[0].halves[2]
     metric = difference(back, LENGTHS, Tolerances(accept="leather"))

@@ -109,6 +109,9 @@ def test_splines_and_parts_of_ellipses_are_splines_and_ellipses_are_ellipses(tmp
     ellipse = outline(tmp_path).ellipse
     assert ellipse is not None
     assert [float(x) for x in ellipse.minor] == [0, 2, 0]
+    # a full turn as programs write it
+    draw(tmp_path, lambda space: space.add_ellipse((0, 0), (4, 0), 0.5, 0, 6.283185, dxfattribs=LAYER))
+    assert outline(tmp_path).ellipse == ellipse
 
 
 def test_holes_are_all_closed_contours_of_their_layer(tmp_path: Path) -> None:

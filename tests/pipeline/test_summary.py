@@ -19,7 +19,7 @@ NEXT_UP = 0.25000000000000006
 """The next double above 0.25."""
 
 
-def report(value: float = 0.1, *, part: str = "hood", code: str = "") -> bytes:
+def report(value: float = 0.1, *, part: str = "hood", code: str = "", formats: list[str] | None = None) -> bytes:
     """Return the report of a job with one part and one check, which is at most 0.25."""
     good = value <= 0.25
     metric = {
@@ -39,7 +39,8 @@ def report(value: float = 0.1, *, part: str = "hood", code: str = "") -> bytes:
     one = {"name": part, "quantity": 1, "class": "exact" if good else "rejected", "flat": None, "surface": None,
            "mass_kg": None, "cut_length_mm": None, "pierces": None, "stages": [stage]}  # fmt: skip
     return json.dumps({
-        "schema": "planish-report/1", "status": "made" if good else "rejected", "job": {"name": "job"}, "parts": [one],
+        "schema": "planish-report/1", "status": "made" if good else "rejected",
+        "job": {"name": "job", "formats": formats}, "parts": [one],
         "nest": {**bare, "sheets": sheets}, "write": {**bare, "files": []},
     }).encode()  # fmt: skip
 
@@ -158,6 +159,27 @@ def test_every_number_of_the_page_is_one_of_the_document() -> None:
     known = set(re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", files["summary.json"].decode()))
     assert len(held) > 100
     assert held <= known
+
+
+def test_a_job_leads_to_what_it_left() -> None:
+    kept = {"page": report(formats=["json", "html"]), "bare": report(formats=["json"]), "old": report(), "lost": None}
+    page = summary(job_row(name, "made", "", 1.0, content) for name, content in kept.items()).decode()
+    led = {"page/report.html", "bare/report.json", "old/report.html"}
+    assert set(re.findall(r'href="([^"#]+/[^"]*)"', page)) == led
+    assert ">lost<" in page
+
+
+def test_a_number_that_is_none_has_no_load() -> None:
+    document = json.loads(report())
+    metrics = document["parts"][0]["stages"][0]["metrics"]
+    metrics[:] = [{**metrics[1], "value": value, "limit": limit} for value, limit in ((True, True), (None, 1.0))]
+    assert job_row("a", "made", "", 1.0, json.dumps(document).encode()).held == ()
+
+
+def test_one_of_a_thing_is_not_several() -> None:
+    page = summary([job_row("a", "made", "", 1.0, report())]).decode()
+    assert "1 of 1 job made" in page
+    assert "1 part, 0 refused by their geometry" in page
 
 
 def test_the_same_jobs_give_the_same_bytes() -> None:

@@ -50,7 +50,7 @@ def test_the_tables_are_those_of_a_job_in_its_units(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("material", "thickness", "serves"),
     [("mild steel", 2.0, (True, True)), ("leather", 2.0, (False, True)), ("MILD STEEL", 3.0, (True, False)),
-     ("", None, (False, False))],
+     ("mild-steel", 2.0, (True, True)), ("S235", 2.0, (True, True)), ("", None, (False, False))],
 )  # fmt: skip
 def test_a_row_serves_what_it_does_not_contradict(
     tmp_path: Path, material: str, thickness: float | None, serves: tuple[bool, bool]

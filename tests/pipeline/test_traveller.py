@@ -115,6 +115,22 @@ def test_names_stay_text(tmp_path: Path, name: str) -> None:
     assert name.replace(" ", "") in head.replace(" ", "")
 
 
+def test_what_failed_without_a_value_is_told_first(job: dict[str, bytes]) -> None:
+    """A number that is none became null on its way into the report."""
+    report = json.loads(job["report.json"])
+    lost = {"name": "lost", "value": None, "unit": "mm", "evidence": "sampled", "limit": 1.0, "pass": False}
+    report["parts"][0]["stages"][1]["metrics"].append({**lost, "margin": None, "where": None})
+    said = " ".join(texts(page_operators(traveller_pdf(Made(report, job)))[0]))
+    assert "FAIL" in said
+    assert "lost not defined, limit 1 mm" in said
+
+
+def test_what_is_not_counted_is_not_none(job: dict[str, bytes]) -> None:
+    report = json.loads(job["report.json"])
+    report["nest"]["sheets"][0] |= {"pierces": None, "cut_length_mm": None}
+    assert "pierces not known" in " ".join(all_texts(traveller_pdf(Made(report, job))))
+
+
 def test_another_length_gives_other_pages(job: dict[str, bytes]) -> None:
     """What is written comes from the report."""
     report = json.loads(job["report.json"])

@@ -77,6 +77,7 @@ def test_plain_numbers_have_no_unit() -> None:
         (Length, "3 deg", 'the unit "deg" is that of an angle in degrees'),
         (Length, "3 1/mm", 'the unit "1/mm" is that of a curvature'),
         (Length, "3 furlong", 'unknown unit "furlong"'),
+        (Length, "12,5 mm", '"12,5 mm" has a comma in its number'),
         (Length, "1/0 in", '"1/0 in" divides by zero'),
         (Length, "twelve", '"twelve" is not a number with a unit'),
         (Length, "", '"" is not a number with a unit'),

@@ -26,12 +26,12 @@ def held(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
     run(build, cwd=ROOT, check=True, capture_output=True)
     (wheel,) = folder.glob("*.whl")
     with zipfile.ZipFile(wheel) as opened:
-        return {name for name in opened.namelist() if opened.getinfo(name).file_size > 0}
+        return {name for name in opened.namelist() if not name.endswith("/")}
 
 
 def sources(folder: Path) -> set[str]:
-    """Return the files below a folder that are not empty and not made, by their paths below the root."""
-    found = (file.relative_to(ROOT).as_posix() for file in folder.rglob("*") if file.is_file() and file.stat().st_size)
+    """Return the files below a folder that are not made, by their paths below the root."""
+    found = (file.relative_to(ROOT).as_posix() for file in folder.rglob("*") if file.is_file())
     return {name for name in found if not MADE.search(name)}
 
 
@@ -44,6 +44,10 @@ def test_every_file_of_the_data_is_in_the_wheel(held: set[str]) -> None:
 def test_every_module_is_in_the_wheel(held: set[str]) -> None:
     modules = {name for folder in ("pipeline", "stages") for name in sources(ROOT / folder) if name.endswith(".py")}
     assert modules - held == set()
+
+
+def test_type_checkers_are_told_that_there_are_types(held: set[str]) -> None:
+    assert {"pipeline/py.typed", "stages/py.typed"} <= held
 
 
 def test_nothing_is_in_the_wheel_that_is_no_source(held: set[str]) -> None:

@@ -45,7 +45,3 @@ function showMissing(error) {
 }
 
 const outcome = (row) => (row.class === "rejected" || row.class === "inconclusive" || row.failed > 0 ? "failed" : "passed");
-
-function margin(metric) {
-  return metric.margin ?? null;
-}

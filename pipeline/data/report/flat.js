@@ -54,7 +54,7 @@ function summaryWords({ worst }) {
 function flatWords(state, [x, y]) {
   const words = [`x ${x.toFixed(2)}`, `y ${y.toFixed(2)} mm`];
   const value = state.field?.at(x, y) ?? null;
-  if (value !== null) words.push(`${state.field.title} ${shown(value)} (${state.field.evidence})${Math.abs(value) > state.field.limit ? " \u25b2 beyond the limit" : ""}`);
+  if (value !== null) words.push(`${state.field.title} ${shown(value)} (${state.field.evidence})${Math.abs(value) > state.field.limit ? ` \u25b2 ${beyondWords(state.field)}` : ""}`);
   const ruling = nearestRuling(state.flat.rulings, x, y);
   if (ruling) words.push(`nearest ruling v ${shown(ruling[4])}`);
   return words.join("   ");

@@ -26,14 +26,18 @@ function shown(value, unit = "") {
     const plain = Number(value.toPrecision(DIGITS));
     text = size !== 0 && (size < 1e-4 || size >= 1e7) ? plain.toExponential() : String(plain);
   }
-  return (unit ? `${text}\u00a0${unit}` : text).replace("-", "\u2212").replace("mm2", "mm\u00b2").replace(/deg$/, "\u00b0");
+  return (unit ? `${text}\u00a0${unit}` : text).replaceAll("-", "\u2212").replace("mm2", "mm\u00b2").replace(/deg$/, "\u00b0");
 }
 
 function exact(value) {
   return value === null || value === undefined ? undefined : String(value);
 }
 
-const percent = (share) => `${Number((100 * share).toPrecision(3))}\u00a0%`;
+/* A share with three digits; what is not all is not shown as all. */
+function percent(share) {
+  const told = Number((100 * share).toPrecision(3));
+  return `${told === 100 && share < 1 ? 99.9 : told}\u00a0%`;
+}
 
 function facts(pairs) {
   const known = pairs.filter(([, value]) => value !== null && value !== undefined && value !== "");

@@ -126,6 +126,9 @@ function paintSigns(plan, field) {
   }
 }
 
+/* Where the colours end at a round number there is no limit to be beyond. */
+const beyondWords = (field) => `beyond the ${field.held ? "limit" : "scale"}`;
+
 const SCALE_ROOM = 58; // px above the pattern that the scale takes
 
 function drawScale(plan, field) {
@@ -144,7 +147,7 @@ function drawScale(plan, field) {
   context.strokeRect(left, top, long, tall);
   context.font = "12px system-ui, sans-serif";
   context.textAlign = "left";
-  const words = beyond ? `${field.title}: \u25b2 beyond the ${field.held ? "limit" : "scale"}` : `${field.title}, to ${field.held ? "its limit" : "a round number: no limit"}`;
+  const words = beyond ? `${field.title}: \u25b2 ${beyondWords(field)}` : `${field.title}, to ${field.held ? "its limit" : "a round number: no limit"}`;
   context.fillText(words, left, top - 7, width - 2 * left);
   for (const tick of [-1, -0.5, 0, 0.5, 1]) {
     const x = left + (long * (tick + 1)) / 2;

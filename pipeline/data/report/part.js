@@ -5,12 +5,12 @@ let current = null; // what is open: { index, flat, solid, form }; form: builds 
 function metricRows(stage) {
   const failing = [...stage.metrics].sort((a, b) => Number(a.pass) - Number(b.pass));
   return failing.map((metric) => {
-    const left = margin(metric), held = metric.limit !== null;
+    const held = metric.limit !== null;
     const cell = (title, value, unit) => make("td", { class: value === null || value === undefined ? "n empty" : "n", "data-h": title, text: shown(value, unit), title: exact(value) });
     const name = make("td", { class: "wide" }, make("div", { class: "metric", text: metric.name }), make("div", { class: "means", text: report.meanings[metric.name] ?? "" }));
     const verdict = make("td", { class: metric.pass ? (held ? "pass" : "") : "fail", text: metric.pass ? (held ? "\u2713 pass" : "no limit") : "\u2717 fail" });
     return make("tr", { class: metric.pass ? "" : "failed" }, name, cell("value", metric.value), make("td", { class: metric.unit ? "" : "empty", text: metric.unit.replace("mm2", "mm\u00b2") }),
-      cell("limit", metric.limit), cell("margin", left), verdict, make("td", { text: metric.evidence }));
+      cell("limit", metric.limit), cell("margin", metric.margin), verdict, make("td", { text: metric.evidence }));
   });
 }
 

@@ -52,7 +52,8 @@ function drawCopy({ context, place, k }, { placement, index, move, contours, lab
   const [l, b, r, t] = pathBox(contours.slice(0, 1));
   const [x, y] = label ?? [(l + r) / 2, (b + t) / 2];
   const [px, py] = put(x, y);
-  const size = 11, most = Math.floor((Math.max(r - l, t - b) * k * 0.9) / (0.6 * size));
+  const turn = (placement.angle * Math.PI) / 180, wide = Math.abs(Math.cos(turn)) * (r - l) + Math.abs(Math.sin(turn)) * (t - b);
+  const size = 11, most = Math.floor((wide * k * 0.9) / (0.6 * size)); // names lie level, however the copy is turned
   const name = `${placement.part} ${placement.copy}${placement.mirrored ? " \u21c4" : ""}`;
   if (most < 3) return;
   context.font = `${size}px system-ui, sans-serif`; context.textAlign = "center"; context.textBaseline = "middle";
@@ -92,7 +93,7 @@ function showSheet(sheet, number) {
   const links = [...names].map(([name, count]) => make("li", {}, make("a", { href: `#part-${rowOf.get(name)}`, text: name }), ` \u00d7 ${count}`));
   const box = make("div", { class: "sheet" }, make("h3", { text: title }),
     facts([["Utilisation", percent(sheet.utilisation)], ["Parts", sheet.placements.length], ["Mass", sheet.mass_kg === null ? null : shown(sheet.mass_kg, "kg")],
-      ["Cut length", shown(sheet.cut_length_mm, "mm")], ["Pierces", sheet.pierces], ["Cost", sheet.cost], ["File", sheet.file],
+      ["Cut length", shown(sheet.cut_length_mm, "mm")], ["Pierces", sheet.pierces], ["Cost", sheet.cost?.toFixed(2)], ["File", sheet.file],
       ["Offcut", sheet.offcut ? `${shown(sheet.offcut.width_mm)} \u00d7 ${shown(sheet.offcut.height_mm)} mm` : null]]),
     make("div", { class: "view" }, planControls(() => plan), make("div", { class: "stage" }, canvas), said),
     make("details", {}, make("summary", { text: "Parts on this sheet" }), make("ul", {}, ...links)));

@@ -1,10 +1,12 @@
 """Search for fewer bins and then a shorter last one, in several threads that share the best layout.
 
 Kernels let each other run, so that threads keep as many cores busy.  The clock is read here and in the two searches.
+A thread that fails does not end the others; whoever asked is told when all have ended.
 """
 
 import threading
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from time import monotonic
 
 from stages.nest.separation.emptying import emptied
@@ -26,7 +28,7 @@ INTERLOCK_SHARE = 0.4
 def improve(problem: Problem, start: Sequence[Spot], wish: Wish, tell: Callable[[list[Spot]], None]) -> None:
     """Tell every layout that is better than the start and all before, until the time is over.
 
-    Items of the start in bin -1 lie nowhere yet.
+    Items of the start in bin -1 lie nowhere yet.  Raises what a thread failed with.
     """
     given = arrays(problem)
     layout, pose = empty_layout(problem, given), pose_for(given)
@@ -38,14 +40,8 @@ def improve(problem: Problem, start: Sequence[Spot], wish: Wish, tell: Callable[
     used = tuple(sorted({spot.bin for spot in start})) if wish.settled else ()
     shared = Shared(layout, used, wish, lambda found: tell(spots_of(found)))
     tables = tables_for(problem, given, wish.threads)
-    threads = [
-        threading.Thread(target=_work, args=(problem, tables, shared, wish, number), daemon=True)
-        for number in range(wish.threads)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(wish.threads) as pool:
+        list(pool.map(lambda number: _work(problem, tables, shared, wish, number), range(wish.threads)))
 
 
 def _work(problem: Problem, tables: Tables, shared: Shared, wish: Wish, number: int) -> None:

@@ -16,21 +16,27 @@ import numpy as np
 from stages.geometry.arrays import Array, Points2
 from stages.geometry.biarc import trace
 from stages.geometry.plane import PlaneCurve, Segment
-from stages.model.cutfile import Flavour, Machine
+from stages.geometry.rigid import Rigid2
+from stages.model.cutfile import CutFile, Flavour, Machine
+from stages.model.helps import Helps, Lead, Tabs
 from stages.model.pattern import Contour, FlatPattern
+from stages.model.report import Outcome
+from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
+from stages.write import readback, write
 from stages.write.drawing import flat_drawing
 from stages.write.dxf import dxf_text
 from stages.write.flavours import as_cut
-from tests.bench.rows import Asked, Row
+from tests.bench.rows import Asked, Extent, Row
 from tests.bench.surroundings import version
 from tests.bench.timing import Took, measured
 from tests.bench.written import HEIGHT, apart, drawn_lines
 from tests.parts import QUINTIC_TANGENT, TAN_30, Table, passage
+from tests.stages.write.patterns import plate
 
 ABOUT = (
     "Lines and arcs on the cut layers at a tolerance of 0.05 mm (each piece of a polyline counts), and the largest "
     "distance between drawing and exact development, either way, found in the DXF text, with the bound of that search "
-    "(0.0008 mm) added. Time from contour to text."
+    "(0.0008 mm) added. Time from contour to text; of a sheet from its layout to a text that is read back and judged."
 )
 CIRCLE: Table = {"circle": {"center": [0, 0, 0], "radius": 100}}
 PARTS: dict[str, Table] = {
@@ -43,6 +49,13 @@ PARTS: dict[str, Table] = {
     },
 }  # fmt: skip
 OURS: tuple[Flavour, ...] = ("polyline-arcs", "polylines")
+PLATES: dict[Extent, int] = {"quick": 3, "usual": 300, "full": 300}
+"""Of 100 x 60 mm with two holes and two marks."""
+BEAM_MM = 0.2
+ALL_HELPS = Helps(
+    beam_mm=BEAM_MM, compensated=True, start="corner", lead_in=Lead("arc", 2.0, 90.0), lead_out=Lead("line", 1.0, 45.0),
+    tabs=Tabs(0.4, spacing_mm=80.0),
+)  # fmt: skip
 BETWEEN = 16
 """Places in each step at which its distance from the edge is asked."""
 MOST = 1 << 16
@@ -50,6 +63,7 @@ MOST = 1 << 16
 
 def rows(asked: Asked) -> Iterator[Row]:
     """Yield lines, arcs and deviation of every part, as we and as others write it."""
+    yield from sheets(asked)
     for name, table in PARTS.items():
         pattern = passage(table).pattern
         assert pattern is not None
@@ -60,6 +74,25 @@ def rows(asked: Asked) -> Iterator[Row]:
         yield from judged(name, "uniform sampling, ezdxf", version("ezdxf"), pattern, took)
         if asked.extent == "quick":
             return
+
+
+def sheets(asked: Asked) -> Iterator[Row]:
+    """Yield how long a sheet of plates takes from layout to judged text, plain and with all helps of the process."""
+    count = PLATES[asked.extent]
+    places = (Placement("plate", i + 1, Rigid2(10 + 110.0 * (i % 30), 10 + 70.0 * (i // 30))) for i in range(count))
+    layout = SheetLayout(Sheet("sheet", 4000.0, 2600.0), 1, tuple(places), 0.9)
+    for what, helps in (("plain", Helps(beam_mm=BEAM_MM)), ("all helps", ALL_HELPS)):
+        took = measured(partial(anew, Nesting((layout,)), helps), asked.rounds)
+        if not took.result.report.passed:
+            raise RuntimeError(f"a sheet of plates, {what}: {took.result.report.findings}")
+        found = version("planish")
+        yield Row(f"a sheet of plates, {what}", f"{count} plates", "planish", found, None, "", *took[1:])
+
+
+def anew(nesting: Nesting, helps: Helps) -> Outcome[tuple[CutFile, ...]]:
+    """Return the drawing of a sheet, its text read for the first time."""
+    readback.forget()
+    return write([plate()], nesting, Machine(helps=helps))
 
 
 def judged(name: str, program: str, found: str, pattern: FlatPattern, took: Took[str]) -> Iterator[Row]:

@@ -3,6 +3,7 @@
 import ctypes
 import os
 import signal
+import subprocess
 import threading
 import time
 from pathlib import Path
@@ -20,6 +21,7 @@ MEMORY = 400 << 20
 GOOD = "good"
 ONCE = "waits the first time that it is run"
 KILLED_ONCE = "is killed from outside the first time that it is run"
+PARENT = "starts another process and waits for it"
 
 
 def segfault() -> None:
@@ -145,11 +147,19 @@ def killed_once(begun: Path) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
+def wait_for_another(told: Path) -> None:
+    """Start a process that does not end, tell its number, and wait for it."""
+    with subprocess.Popen(("sleep", "3600")) as other:
+        told.write_text(str(other.pid))
+
+
 def poisoned(work: Work) -> Record:
     """Run a job in a child, doing what its first setting says."""
     kind = work.settings[0]
     if kind == ONCE:
         wait_once(Path(f"{work.draft}.begun"))
+    if kind == PARENT:
+        wait_for_another(Path(f"{work.draft}.started"))
     if kind == KILLED_ONCE:
         killed_once(Path(work.file).with_name(f"{work.job}.begun"))
     if kind in {GOOD, ONCE, KILLED_ONCE}:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeline.batch import batch
+from pipeline.batch.asked import Asked
 from pipeline.batch.entries import Entries, entries
 from pipeline.batch.executor import Executor
 from pipeline.batch.identity import Program
@@ -38,7 +39,7 @@ def go(
 ) -> list[str]:
     """Run a batch to its end and return the ids of the jobs that were run for it, in order."""
     executor = executor or InProcess()
-    with batch.ready(batch.Order(out, limits, allow, "planish batch"), by) as at:
+    with batch.ready(batch.Order(out, limits, allow, Asked("planish batch")), by) as at:
         batch.run(at, entries([jobs]) if isinstance(jobs, Path) else jobs, executor, Stop(), heard or Heard())
     return executor.ran
 

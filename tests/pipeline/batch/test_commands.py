@@ -10,32 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.batch import commands
 from pipeline.batch.identity import program
 from pipeline.batch.work import Record, Work
-from pipeline.cli import main
+from tests.pipeline.batch.calls import call, plain
 from tests.pipeline.batch.inprocess import InProcess, made, made_as, tree
 from tests.pipeline.batch.runs import go, lines_file
-
-
-@pytest.fixture
-def executor(monkeypatch: pytest.MonkeyPatch) -> InProcess:
-    """Put the executor of the test in the place of the children."""
-    stand_in = InProcess()
-    monkeypatch.setattr(commands, "executor_of", lambda *_args: stand_in)
-    return stand_in
-
-
-def call(*words: object) -> int:
-    """Return the exit code of a command."""
-    with pytest.raises(SystemExit) as ended:
-        main([str(word) for word in words])
-    return int(ended.value.code or 0)
-
-
-def plain(*words: object) -> None:
-    """Call a command that only tells something."""
-    main([str(word) for word in words])
 
 
 def test_a_batch_that_is_made_ends_with_0(
@@ -66,20 +45,6 @@ def test_a_batch_with_a_job_that_is_not_made_ends_with_3_and_names_it(
     assert "  jobs-0000002: rejected: no\n" in capsys.readouterr().err
     plain("status", out)
     assert capsys.readouterr().out == "3 jobs: 2 made, 1 rejected, 0 waiting\n  jobs-0000002: rejected: no\n"
-
-
-def test_retry_runs_what_was_not_made_and_nothing_else(
-    tmp_path: Path, executor: InProcess, capsys: pytest.CaptureFixture[str]
-) -> None:
-    executor.job = rejecting
-    out = tmp_path / "out"
-    call("batch", lines_file(tmp_path / "in", 3), "-o", out)
-    executor.ran.clear()
-    executor.job = made
-    assert call("retry", out) == 0
-    assert executor.ran == ["jobs-0000002"]
-    plain("explain", out, "JOBS-0000002")
-    assert "ran in run 2: planish retry asked for it" in capsys.readouterr().out
 
 
 def test_events_and_status_as_json(tmp_path: Path, executor: InProcess, capsys: pytest.CaptureFixture[str]) -> None:
@@ -163,7 +128,7 @@ def test_a_full_disk_ends_with_75_and_the_remedy_and_the_batch_goes_on(
     assert call("batch", jobs, "-o", out) == 75
     told = capsys.readouterr().err
     assert "No space left on device (make space there, and run the same command again)" in told
-    assert "go on with: planish " in told
+    assert f"go on with: planish batch {jobs} -o {out}\n" in told
     executor.job = made
     assert call("batch", jobs, "-o", out) == 0
     assert len(tree(out)) == 6
@@ -172,7 +137,6 @@ def test_a_full_disk_ends_with_75_and_the_remedy_and_the_batch_goes_on(
 SLOW = """
 import sys, time
 from pipeline.batch import commands
-from pipeline.batch.identity import program
 from pipeline.cli import main
 from tests.pipeline.batch.inprocess import InProcess, made
 
@@ -223,7 +187,7 @@ def test_an_end_asked_for_while_jobs_are_taken_in_is_no_end_of_the_batch(
     executor.job, executor.slots = job, 1000
     jobs, out = lines_file(tmp_path / "in", 300), tmp_path / "out"
     assert call("batch", jobs, "-o", out) == 75
-    assert "256 jobs: 256 made, 0 waiting\ngo on with: planish " in capsys.readouterr().err
+    assert "256 jobs: 256 made, 0 waiting\ngo on with: planish batch " in capsys.readouterr().err
     executor.job = made
     assert call("batch", jobs, "-o", out) == 0
     assert len(executor.ran) == 300

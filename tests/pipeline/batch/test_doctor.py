@@ -95,6 +95,8 @@ def test_the_file_system_is_that_of_the_longest_mount_point(monkeypatch: Patch, 
     monkeypatch.setattr(Path, "read_text", lambda *_: mounts)
     assert doctor.file_system(tmp_path / "out") == "nfs"
     assert doctor.file_system(Path("/")) == "ext4"
+    mounts = mounts.replace(" nfs rw", "\\040x autofs rw") + f"s:/ {tmp_path}\\040x nfs4 rw\n"
+    assert doctor.file_system(tmp_path.with_name(f"{tmp_path.name} x")) == "nfs4", "a blank in its name, mounted over"
     monkeypatch.setattr(Path, "read_text", refuse)
     assert doctor.file_system(Path("/")) == "an unknown file system"
 

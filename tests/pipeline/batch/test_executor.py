@@ -13,7 +13,7 @@ import pytest
 
 from pipeline.batch import digest
 from pipeline.batch.executor import MOST, Local, most
-from tests.pipeline.batch.poison import ACTS, ENDS, GOOD, poisoned, work
+from tests.pipeline.batch.poison import ACTS, ENDS, GOOD, PARENT, WALL_S, poisoned, work
 from tests.pipeline.batch.processes import alive_after, below
 
 WAIT_S = 300.0
@@ -71,6 +71,14 @@ def test_a_job_is_not_blamed_for_the_end_of_the_process_that_children_are_forked
     os.kill(executor.places[0].server, signal.SIGKILL)
     assert not running.result(WAIT_S).own
     assert executor.submit(work(tmp_path, 2)).result(WAIT_S).status == "made"
+    executor.close(now=True)
+
+
+def test_what_a_job_has_started_ends_with_the_job_that_takes_too_long(tmp_path: Path) -> None:
+    executor = Local(1, poisoned)
+    assert executor.submit(work(tmp_path, 0, PARENT, WALL_S)).result(WAIT_S).status == "timed-out"
+    (told,) = tmp_path.glob("*.started")
+    assert not alive_after({int(told.read_text())}, 5.0)
     executor.close(now=True)
 
 

@@ -36,6 +36,37 @@ def test_a_cell_in_quotes_may_hold_commas_quotes_and_ends_of_lines(tmp_path: Pat
     ]
 
 
+@pytest.mark.parametrize("between", [";", "\t"])
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_a_table_of_a_spreadsheet_is_read_whatever_stands_between_its_cells(
+    tmp_path: Path, between: str, mark: str
+) -> None:
+    text = f'{mark}{HEAD}left,1.5,"a;b\t,x"\n,2,c\n'.replace(",", between).replace("\n", "\r\n")
+    table = table_of(family(tmp_path, text), tmp_path / "blade.toml")
+    content = table.file.read_bytes()
+    found = list(rows(table))
+    assert [entry.name for _, entry in found] == ["left", "blade-0000002"]
+    cells = [settings(table.columns, content[row.offset :][: row.length], table.between) for _, row in found]
+    assert cells == [("part[0].surface.k0=1.5", f"job.name=a;b\t{between}x"), ("part[0].surface.k0=2", "job.name=c")]
+    assert go(tmp_path / "out", rows(table)) == ["left", "blade-0000002"]
+    assert b"part[0].surface.k0=1.5" in tree(tmp_path / "out")["left/report.json"]
+
+
+def test_a_table_of_one_column_is_read(tmp_path: Path) -> None:
+    table = table_of(family(tmp_path, "job.name\nx\n"), tmp_path / "blade.toml")
+    assert (table.columns, table.between) == (("job.name",), ",")
+
+
+@pytest.mark.parametrize(
+    ("encoding", "why"), [("utf-16", "it is UTF-16 text; save it as CSV in UTF-8"), ("latin-1", "not UTF-8 text; save")]
+)
+def test_a_table_in_another_encoding_is_refused_with_the_cure(tmp_path: Path, encoding: str, why: str) -> None:
+    file = family(tmp_path, "")
+    file.write_bytes("id,job.näme\n".encode(encoding))
+    with pytest.raises(BadInputError, match=why):
+        table_of(file, tmp_path / "blade.toml")
+
+
 def test_an_empty_cell_leaves_the_template_as_it_is(tmp_path: Path) -> None:
     assert settings(("a", "b"), b",2") == ("b=2",)
 
@@ -68,6 +99,8 @@ def test_a_bad_row_is_a_bad_job_and_the_others_are_run(tmp_path: Path) -> None:
         ('"x"".y=1"', "is no path"),
         (",,", "no paths"),
         ("", "no paths"),
+        ('"""\\q"""', "is no path"),
+        ("id;a b", '"a b" is no path'),
         (",".join(f"c{i}" for i in range(2000)), "2000 columns"),
     ],
 )

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.batch import digest, guard
-from pipeline.batch.work import Limits, Record, Work
+from pipeline.batch.work import LONGEST_CAUSE, Limits, Record, Work, one_line
 from pipeline.job import Job
 from pipeline.run import JobResult
 from tests.pipeline.jobs import PLATE, TWISTED
@@ -154,5 +154,5 @@ def test_a_folder_that_takes_no_files_is_no_failure_of_the_job(tmp_path: Path) -
 
 
 def test_a_cause_is_one_line_of_some_length() -> None:
-    assert guard.one_line("a\r\n b\tc") == "a b c"
-    assert len(guard.one_line("x" * 10_000)) == guard.LONGEST_CAUSE
+    assert one_line("a\r\n b\tc \x1b[31m\udcff") == "a b c ?[31m?"
+    assert len(one_line("x" * 10_000)) == LONGEST_CAUSE

@@ -6,16 +6,9 @@ import pytest
 
 from pipeline.batch import commands
 from pipeline.batch.executor import Local
-from pipeline.cli import main
+from tests.pipeline.batch.calls import call
 from tests.pipeline.batch.inprocess import InProcess, made
 from tests.pipeline.batch.poisonedbatch import BAD, Hurried, by_text, check, jobs_file, kinds
-
-
-def call(*words: object) -> int:
-    """Return the exit code of a command."""
-    with pytest.raises(SystemExit) as ended:
-        main([str(word) for word in words])
-    return int(ended.value.code or 0)
 
 
 def test_a_batch_with_poison_on_this_machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

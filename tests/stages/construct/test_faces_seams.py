@@ -11,7 +11,7 @@ import pytest
 from OCP.TopoDS import TopoDS_Shape
 
 from stages.construct.faces import face_surface
-from stages.construct.faces_seams import SEAM_NUMBER, seamed
+from stages.construct.faces_seams import SAMPLES, SEAM_NUMBER, _met, seamed
 from stages.construct.faces_spline import straight
 from stages.geometry.arrays import norm
 from stages.geometry.backwards import backwards
@@ -158,3 +158,10 @@ def test_a_face_with_a_seam_is_left_as_it_is() -> None:
     assert isinstance(face.surface, CadCone)
     assert seamed(face, face.surface) is face
     assert isinstance(face_surface(cad.part(face), TOL).product, RuledSurface)
+
+
+def test_a_curve_that_goes_round_more_than_once_meets_a_ruling_in_every_round() -> None:
+    """From half a turn before the ruling to one and a half behind it, evenly."""
+    angles = 2.0 * pi * np.linspace(-0.5, 1.5, SAMPLES)
+    assert_near(_met(angles + 0.3, 0.3), [0.25, 0.75], bound=1e-12, why="straight lines between samples")
+    assert_near(sorted(_met(0.3 - angles, 0.3)), [0.25, 0.75], bound=1e-12, why="the other way round")

@@ -87,7 +87,9 @@ def test_a_solid_takes_the_flat_length_of_its_neutral_surface() -> None:
     assert_near(
         lengths, [WIDTH, 140.0 + np.pi * (3.0 - T + K * T)], bound=1e-8, why="r + K t, r that of the inner skin"
     )
-    assert_near(outcome.report.metric("solid_thickness_mm").value, T, bound=1e-9, why="the skins are parallel")
+    thickness = outcome.report.metric("solid_thickness_mm")
+    assert_near(thickness.value, T, bound=1e-9, why="the skins are parallel")
+    assert thickness.evidence == "sampled", "a mean over vertices"
 
 
 def test_holes_make_handles_of_a_solid_and_none_of_its_skin() -> None:

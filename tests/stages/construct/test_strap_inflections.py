@@ -118,6 +118,25 @@ def test_an_inflection_with_torsion_is_refused_with_the_longest_part_that_does(h
     assert longer.codes("construct", fatal=True) == ["strap-too-wide"]
 
 
+def run_off(made: Passage) -> tuple[float, ...]:
+    """Return where rulings run off, and from where to where the longest part with a strap reaches."""
+    (finding,) = made.reports["construct"].findings
+    assert finding.code == "strap-inflection" and finding.where is not None
+    where = finding.where
+    return float(where["piece"]), *(float(where[key]) for key in ("v", "from", "to"))
+
+
+def test_the_longest_part_takes_straight_pieces_at_its_end_with_it_either_way_round() -> None:
+    """The tangent at the end of the curve, 3 mm long: on it no ruling runs off, whichever comes first."""
+    alone = run_off(passage(over(POLE, "0.05")))
+    end, before = (np.array([Fraction(x) for x in row]) for row in (POLE[-1], POLE[-2]))
+    line = [[str(x) for x in row] for row in (end, end + 4 * (end - before))]
+    there = run_off(passage(joined(POLE, line, half="0.05")))
+    back = run_off(passage(joined(line[::-1], POLE[::-1], half="0.05")))
+    assert_near(there, [0.0, 0.25, alone[2], 2.0], bound=1e-12, why="to the end of the line")
+    assert_near(back, [1.0, 1.75, 0.0, 2.0 - alone[2]], bound=2e-6, why="told in millionths")
+
+
 def test_the_part_is_that_at_which_the_lean_turns_at_one_over_the_width() -> None:
     """d lambda / ds = 1 / w by 40 digits at the end that is told."""
     made = passage(over(POLE, "0.01"))

@@ -68,6 +68,12 @@ def test_a_nearly_straight_arc_keeps_its_digits() -> None:
     assert arcpath.distances(np.array([[50.0, 1.0]]), arc, np.array([0]))[0] == pytest.approx(1.0, abs=1e-9)
 
 
+def test_a_piece_of_no_length_is_as_far_away_as_its_place() -> None:
+    doubled = ArcPath(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 4.0], [9.0, 4.0]]), np.zeros(4), closed=False)
+    far = arcpath.distances(np.zeros((2, 2)), doubled, np.array([1, 2]))
+    assert far == pytest.approx([5.0, 5.0], rel=1e-15)
+
+
 def test_distances_to_an_arc_are_those_of_its_carrier_or_its_ends() -> None:
     quarter = ArcPath(np.array([[10.0, 0.0], [0.0, 10.0]]), np.array([sqrt(2.0) - 1.0, 0.0]), closed=False)
     points = np.array([[3.0, 4.0], [30.0, 40.0], [10.0, -2.0], [-3.0, 10.0], [-20.0, -20.0]])

@@ -7,7 +7,18 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from stages.geometry.arrays import Array, ArrayValue, cross2, diagonal, dot, norm, similarities, unit
+from stages.geometry.arrays import (
+    Array,
+    ArrayValue,
+    cross2,
+    diagonal,
+    dot,
+    float_rows,
+    floats,
+    norm,
+    similarities,
+    unit,
+)
 from stages.geometry.curves import Bezier, rational
 from stages.geometry.development import develop
 from stages.geometry.plane import CircularArc, Segment
@@ -108,3 +119,11 @@ def test_similarities_add_up_to_the_singular_values() -> None:
     similar, mirrored = similarities(every[..., 0], every[..., 1])
     found = np.stack([similar + mirrored, np.abs(similar - mirrored)], axis=1)
     assert_near(found, np.linalg.svd(every)[1], bound=1e-14, why="some ten roundings of numbers up to 5")
+
+
+def test_exact_numbers_are_rounded_once() -> None:
+    """0.1 + 0.2 as fractions is 3/10, which is not the sum of two doubles."""
+    tenth = Fraction(1, 10)
+    assert floats(iter([tenth + 2 * tenth, Fraction(1, 3)])).tolist() == [0.3, 1 / 3]
+    assert float_rows([[tenth + 2 * tenth], [Fraction(2)]]).tolist() == [[0.3], [2.0]]
+    assert floats([]).shape == (0,)

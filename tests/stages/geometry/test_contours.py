@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import EPS
-from stages.geometry.contours import area, area_and_centroid, length
+from stages.geometry.contours import area, area_and_centroid, from_positions, length
 from stages.geometry.development import develop
 from stages.geometry.flatmap import DevelopedEdge
 from stages.geometry.plane import CircularArc, PlaneCurve, Segment
@@ -38,6 +38,8 @@ def test_the_sense_of_a_contour_is_the_sign_of_its_area() -> None:
     hole: list[PlaneCurve] = [CircularArc(np.array([1e3, -1e3]), 2.0, 0.3, -2.0 * pi)]
     assert_relative([area(disc), -area(hole)], [4.0 * pi] * 2, bound=64 * EPS * 1e3, why="a centre at 1e3")
     assert_relative([length(disc), length(hole)], [4.0 * pi] * 2, bound=64 * EPS * 1e3, why="a centre at 1e3")
+    second = np.array([from_positions(disc), from_positions(hole)])
+    assert_near(second, [[4 * pi, 4 * pi], [4 * pi, -4 * pi]], bound=64 * EPS * 1e3, why="the same in closed form")
 
 
 def test_a_developed_edge_has_the_length_of_its_curve() -> None:
@@ -45,7 +47,8 @@ def test_a_developed_edge_has_the_length_of_its_curve() -> None:
     for u, radius in ((0.0, 3.0), (1.0, 1.5)):
         for reverse in (False, True):
             edge = DevelopedEdge(piece, u, reverse)
-            assert_relative([length([edge])], [2.0 * pi * radius], bound=1e-13, why="closed form")
+            both = [length([edge]), from_positions([edge])[0]]
+            assert_relative(both, [2.0 * pi * radius] * 2, bound=1e-13, why="closed form")
             ends = edge.at(np.array([0.0, 1.0]))
             assert_near(
                 DevelopedEdge(piece, u, not reverse).at(np.array([1.0, 0.0])), ends, bound=0.0, why="same points"

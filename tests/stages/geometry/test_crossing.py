@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from stages.geometry import ruled
 from stages.geometry.cells import first_cells, may_meet, near_pairs
-from stages.geometry.crossing import RESOLUTION, Crossing, crossings
+from stages.geometry.crossing import MOST_PAIRS, RESOLUTION, Crossing, Search, crossings
 from stages.geometry.curves import Circular, Curve, bezier
 from stages.geometry.ruled import RuledPatch, size_of
 from tests.near import assert_near
@@ -37,8 +37,12 @@ LOOP = [[0, 0], [10, 6], [-6, 6], [4, 0]]
 """A cubic that is symmetric in x = 2 and passes through itself there."""
 
 
-def crossings_of(surface: Patches) -> list[Crossing]:
+def search_of(surface: Patches) -> Search:
     return crossings(surface, size_of(surface))
+
+
+def crossings_of(surface: Patches) -> list[Crossing]:
+    return list(search_of(surface).found)
 
 
 def cylinder(points: list[list[object]], direction: tuple[object, ...]) -> Patches:
@@ -88,7 +92,7 @@ ORDINARY: dict[str, Table] = {
 
 @pytest.mark.parametrize("name", ORDINARY)
 def test_an_ordinary_part_does_not_cross_itself(name: str) -> None:
-    assert crossings_of(patches(ORDINARY[name])) == []
+    assert search_of(patches(ORDINARY[name])) == Search(), "and no place stays open"
 
 
 TOUCHING: dict[str, Patches] = {
@@ -105,7 +109,26 @@ TOUCHING: dict[str, Patches] = {
 
 @pytest.mark.parametrize("name", TOUCHING)
 def test_sheets_that_touch_do_not_cross(name: str) -> None:
-    assert crossings_of(TOUCHING[name]) == []
+    search = search_of(TOUCHING[name])
+    assert search.found == ()
+    assert (search.unsettled is not None) == (name == "a pipe wound twice"), "sheets that lie on each other stay open"
+
+
+def test_what_the_search_leaves_open_is_told_with_a_place_on_both_sheets() -> None:
+    """A pipe of radius 10 wound twice: v and v + 1/2 are one ruling, and no halving takes them apart."""
+    left = search_of(TOUCHING["a pipe wound twice"]).unsettled
+    assert left is not None
+    assert left.pairs > MOST_PAIRS
+    assert_near(hypot(*left.point[:2]), 10.0, bound=1e-12, why="on the pipe")
+    assert abs(left.v[1] - left.v[0] - 0.5) * 4 * pi * 10 <= 2.0 * left.cell_mm, "the middles of cells that meet"
+    assert 0.0 < left.cell_mm < 20.0 / 4, "the first cells reach over 20 mm, and were halved"
+
+
+def test_a_search_that_ends_too_early_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stages.geometry.crossing.HALVINGS", 0)
+    search = search_of(cylinder(LOOP, (0, 0.2, 50)))
+    assert search.found == ()
+    assert search.unsettled is not None, "the crossing of the loop was not looked for"
 
 
 def loop_place() -> tuple[float, float, float]:

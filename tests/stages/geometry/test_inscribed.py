@@ -8,13 +8,19 @@ import pytest
 from stages.errors import NoSolutionError
 from stages.geometry.arcpath import area
 from stages.geometry.hausdorff import hausdorff
-from stages.geometry.inscribed import chorded, inscribed
+from stages.geometry.inscribed import CHORD_SHARE, STEPS, chorded, inscribed
 from stages.geometry.plane import CircularArc, Segment
 from stages.geometry.sampling import resolved
 from tests.near import assert_near
+from tests.stages.geometry.plane_curves import Formula
 from tests.stages.write.patterns import polygon_edges
 
 TAU = 2.0 * pi
+ELLIPSE = Formula(
+    lambda t: 25.0 * np.exp(1j * TAU * t) + 15.0 * np.exp(-1j * TAU * t),
+    lambda t: TAU * 1j * (25.0 * np.exp(1j * TAU * t) - 15.0 * np.exp(-1j * TAU * t)),
+)
+"""Half-axes of 40 and 10 mm."""
 
 
 @pytest.mark.parametrize("accuracy", [0.1, 0.02])
@@ -22,9 +28,9 @@ TAU = 2.0 * pi
 def test_a_circle_takes_as_many_chords_as_its_height_asks(radius: float, accuracy: float) -> None:
     edge = CircularArc(np.array([3.0, -2.0]), radius, 0.4, TAU)
     path = inscribed([edge], accuracy=accuracy)
-    fewest = ceil(TAU / (2.0 * acos(1.0 - accuracy / radius)))
-    # 5 % of the accuracy is kept back, and corners lie on a grid of points
-    assert fewest <= path.bulges.size <= 1.1 * fewest + 1
+    fewest, kept = (ceil(TAU / (2.0 * acos(1.0 - share * accuracy / radius))) for share in (1.0, CHORD_SHARE))
+    # a chord ends on a point: it may fall short by one step
+    assert fewest <= path.bulges.size <= ceil(kept * (1.0 + 1.0 / (STEPS - 1)))
     found = hausdorff([resolved(edge, accuracy=1e-4)], path, accuracy=accuracy)
     assert 0.8 * accuracy < found.bound_mm <= accuracy
     off = np.hypot(*(path.vertices - [3.0, -2.0]).T) - radius
@@ -43,10 +49,21 @@ def test_a_hole_smaller_than_the_accuracy_still_encloses_something() -> None:
     assert area(path) < 0.0
 
 
-def test_no_short_chord_is_left_over() -> None:
-    path = inscribed([CircularArc(np.zeros(2), 20.0, 0.0, TAU)], accuracy=0.02)
+@pytest.mark.parametrize("radius", [4.0, 20.0, 33.0, 50.0, 81.0, 300.0])
+def test_no_short_chord_is_left_over(radius: float) -> None:
+    path = inscribed([CircularArc(np.zeros(2), radius, 0.0, TAU)], accuracy=0.02)
     steps = np.hypot(*(np.roll(path.vertices, -1, axis=0) - path.vertices).T)
-    assert steps.min() > 0.5 * steps.max()
+    # what is left over is spread over all, each ends on a point
+    assert steps.min() > (1.0 - 2.0 / STEPS) * (1.0 - 1.0 / path.bulges.size) * steps.max()
+
+
+def test_chords_follow_the_bend_of_an_edge() -> None:
+    """On an ellipse of 40 x 10 they are longest where it is flattest, and each is about as high as allowed."""
+    path = inscribed([ELLIPSE], accuracy=0.02)
+    steps = np.hypot(*(np.roll(path.vertices, -1, axis=0) - path.vertices).T)
+    assert steps.max() > 3.0 * steps.min()
+    middles = resolved(ELLIPSE, accuracy=1e-5)
+    assert 0.8 * 0.02 < hausdorff([middles], path, accuracy=0.02).value_mm <= CHORD_SHARE * 0.02 * (1.0 + 1.0 / STEPS)
 
 
 def test_an_edge_that_is_a_point_has_no_corner_of_its_own() -> None:

@@ -69,3 +69,12 @@ def test_two_never_share_a_place() -> None:
     middles = np.sort(found.middles)
     assert found.missing + middles.size == 8
     assert np.diff(middles).min() >= 0.6 - 1e-12
+
+
+def test_a_gap_keeps_from_its_neighbours_across_the_end_of_the_path() -> None:
+    """On a square of 10 every place is free but corners: gaps of 1 mm lie 0.1 mm apart at least, once round."""
+    found = gaps(SQUARE, Wish(30, 1.0, 0.0, 0.1), NOWHERE)
+    middles = np.sort(found.middles)
+    apart = np.diff(middles, append=middles[0] + float(lengths(SQUARE).sum()))
+    assert middles.size > 20
+    assert apart.min() >= 1.1 - 1e-12

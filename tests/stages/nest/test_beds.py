@@ -145,3 +145,6 @@ def test_sheets_count_one_each_unless_all_new_stock_has_a_price_and_remnants_are
     sheets = Sheet("a", 10.0, 10.0, price=7.0), Sheet("b", 10.0, 10.0)
     assert costs(*sheets, remnant) == [(1.0, 0.0), (1.0, 0.0), (0.0, 0.0)]
     assert costs(sheets[0], remnant, roll("c", 10.0, price=20.0)) == [(7.0, 0.0), (0.0, 0.0), (0.0, 0.02)]
+    given = Sheet("g", 10.0, 10.0, price=0.0)
+    assert costs(sheets[0], given) == [(7.0, 0.0), (0.0, 0.0)]
+    assert costs(given, given) == [(1.0, 0.0)] * 2, "where nothing has a price fewer sheets are still better"

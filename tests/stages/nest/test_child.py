@@ -12,7 +12,7 @@ import pytest
 from shapely import box
 
 from stages.nest import child
-from stages.nest.child import ENGINE, EngineError, Told, layouts, solve
+from stages.nest.child import ENGINE, EngineError, Told, last_words, layouts, solve
 from stages.nest.separation.problem import NOWHERE, RECTANGLE, Item, Kind, Problem, Spot
 from stages.nest.separation.wire import Request, request_line
 
@@ -123,6 +123,7 @@ NONSENSE = {
     "infinite": json.dumps({"placed": [ROWS[0], [0, 0, 0.0, float("inf"), 5.0]]}),
     "an infinite bin": json.dumps({"placed": [ROWS[0], [float("inf"), 0, 0.0, 5.0, 5.0]]}),
     "no number": json.dumps({"placed": [ROWS[0], [0, 0, "a", None, 5.0]]}),
+    "beyond all sheets": json.dumps({"placed": [ROWS[0], [0, 0, 0.0, 1e300, 5.0]]}),
     "short rows": json.dumps({"placed": [[0, 0], [0, 0]]}),
 }
 
@@ -159,7 +160,14 @@ def test_an_error_is_quoted_unless_there_is_a_layout() -> None:
     wrong = json.dumps({"error": 'ValueError: it is not "ready"'}).encode()
     with pytest.raises(EngineError, match="it is not"):
         layouts(Told([wrong], ready=1.0), request())
-    assert len(layouts(Told([PLACED.encode(), wrong], ready=1.0), request())) == 1
+    told = Told([PLACED.encode(), wrong], ready=1.0)
+    assert len(layouts(told, request())) == 1
+    assert last_words(told) == 'ValueError: it is not "ready"'
+
+
+@pytest.mark.parametrize("lines", [[], [PLACED], ["hello"], ["3"]])
+def test_an_engine_that_did_not_fail_has_no_last_words(lines: list[str]) -> None:
+    assert last_words(Told([line.encode() for line in lines], ready=1.0)) is None
 
 
 def test_what_the_engine_cannot_read_is_an_error_that_it_names() -> None:

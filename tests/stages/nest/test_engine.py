@@ -56,6 +56,7 @@ NONSENSE = {
     "too few parts": answering(placing(THERE)),
     "no such bin": answering(placing(THERE, THERE, [9, 0, 0.0, 310.0, 160.0])),
     "not finite": answering(placing(THERE, THERE, [0, 0, float("nan"), 310.0, 160.0])),
+    "beyond all sheets": answering(placing(THERE, THERE, [0, 0, 0.0, 1e300, 160.0])),
     "infinite": answering(placing(THERE, THERE, [float("inf"), 0, 0.0, 310.0, 160.0])),
 }
 
@@ -113,6 +114,16 @@ def test_an_engine_that_tells_the_truth_is_believed(monkeypatch: pytest.MonkeyPa
     assert len(made(outcome).layouts) == 1
     assert codes(outcome) == []
     assert outcome.report.metric("min_gap_mm").value == pytest.approx(6.0)
+
+
+def test_an_engine_that_fails_after_a_layout_is_believed_and_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stages.nest.first_plans", one_on_each_sheet)
+    failing = answering(TRUE, json.dumps({"error": "IndexError: planted"}))
+    outcome = nest_with(TWO, [PLATE], BRIEF, TOL, Engine(0, command=failing))
+    assert len(made(outcome).layouts) == 1
+    assert [finding.message for finding in outcome.report.findings] == [
+        "the nesting engine failed: IndexError: planted"
+    ]
 
 
 def test_where_the_last_layout_is_a_lie_the_one_before_it_is_used(monkeypatch: pytest.MonkeyPatch) -> None:

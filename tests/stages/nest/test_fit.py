@@ -1,5 +1,7 @@
 """Which hands and angles of a part are tried on which stock."""
 
+from time import process_time
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,11 +9,11 @@ from hypothesis import strategies as st
 from shapely import Polygon
 
 from stages.geometry.arcpath import polygon, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.rigid import Rigid2, apply
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.beds import bed
 from stages.nest.blank import Placed, as_blank, turned
-from stages.nest.fit import Kind, angles_on, fitting_angles, hull, kind, tight_angle
+from stages.nest.fit import Kind, angles_on, fitting_angles, hull, kind, tight_angle, widths
 from stages.nest.lots import task_of
 from stages.nest.turns import Turns, allowed, contains
 from tests.near import assert_near
@@ -131,3 +133,25 @@ def test_the_tight_angle_of_a_mirrored_part_is_the_mirrored_one() -> None:
     part = base.replace(outer=type(base.outer)((), transform(base.outer.path, Rigid2(angle_deg=20.0)), 0.0))
     plain, mirrored = (tight_angle(hull(as_blank(0, part, FREE, mirrored=hand))) for hand in (False, True))
     assert_near([plain, mirrored], [70.0, 20.0], bound=1e-6, why="rounding of the hull")
+
+
+@given(st.integers(3, 40), st.integers(0, 10_000), st.sampled_from([1.0, 1e3]))
+@settings(max_examples=60, deadline=None)
+def test_the_width_of_a_loop_is_that_of_all_its_corners(count: int, seed: int, size: float) -> None:
+    """Second method: every corner turned."""
+    rng = np.random.default_rng(seed)
+    corners = np.array(Polygon(rng.uniform(-size, size, (count, 2))).convex_hull.exterior.coords)[:-1]
+    loop = corners if Polygon(corners).exterior.is_ccw else corners[::-1]
+    edges = np.degrees(np.arctan2(*(np.roll(loop, -1, axis=0) - loop).T[::-1]))
+    angles = np.concatenate([rng.uniform(-720.0, 720.0, 20), -edges, 90.0 - edges, [0.0, 90.0, 360.0]])
+    x = [apply(Rigid2(angle_deg=angle), loop)[:, 0] for angle in angles]
+    assert_near(widths(loop, angles), [np.ptp(one) for one in x], bound=1e-12 * size, why="rounding of a turn")
+
+
+def test_a_disc_too_large_for_all_sheets_is_told_at_once() -> None:
+    """Its hull has 5000 corners: all of them turned to all of its edges were 600 MB and half a minute."""
+    sheets = tuple(Sheet(f"s{number}", 2000.0, 1000.0 + number) for number in range(20))
+    start = process_time()
+    (one,) = lots(disc("tank floor", 5000.0), stock=sheets)
+    assert process_time() - start < 5.0, "0.3 s on an idle core"
+    assert not any(one.ways)

@@ -128,6 +128,8 @@ STOCK: dict[str, tuple[list[Sheet], str, str]] = {
         "201",
     ),
     "a grain that is no number": ([replace(PLATE, grain_deg=np.nan)], "stock-invalid", "grain"),
+    "a negative price": ([replace(PLATE, price=-1.0)], "stock-invalid", "the price is -1"),
+    "a price that is no number": ([replace(PLATE, price=np.nan)], "stock-invalid", "the price is nan"),
     "an outline that crosses itself": ([replace(PLATE, outline=CROSSED[1])], "stock-invalid", "the outline crosses"),
     "a defect that crosses itself": ([replace(PLATE, defects=CROSSED)], "stock-invalid", "defect 2 crosses itself"),
     "a zone that crosses itself": ([replace(PLATE, zones=(Zone(CROSSED[1], 1),))], "stock-invalid", "zone 1 crosses"),
@@ -249,7 +251,23 @@ def test_nothing_to_place_needs_no_stock() -> None:
     assert troubles([GOOD.replace(quantity=0)], [], QUICK) == []
 
 
-def test_a_thousand_different_parts_are_looked_at_quickly() -> None:
+def test_many_different_parts_are_looked_at_quickly() -> None:
     start = time.process_time()
     assert troubles([disc(f"d{i}", 10.0 + i) for i in range(50)], [PLATE], QUICK) == []
     assert time.process_time() - start < 50 * 0.02, "about 1 ms a part"
+
+
+def test_a_perforated_plate_is_looked_at_quickly_and_what_is_wrong_with_it_found() -> None:
+    """Of 900 holes only those whose boxes meet are held against each other."""
+    places = [(10.0 * i, 10.0 * j + 5.0) for i in range(30) for j in range(30)]
+    sieve = [contour([(x + 7.0, y), (x + 3.0, y)], [1.0, 1.0], hole=True) for x, y in places]
+    good = bad(contour(box(300.0, 300.0)), *sieve)
+    start = time.process_time()
+    assert troubles([good], [PLATE], QUICK) == []
+    assert time.process_time() - start < 5.0
+    wider = [hole(box(7.0, 1.0, 111.0, 115.0)), hole(box(4.0, 4.0, 298.0, 50.0))]
+    found = troubles([good.replace(inner=(*good.inner, *wider))], [PLATE], QUICK)
+    assert [finding.message.removeprefix("part 'bad': ") for finding in found] == [
+        "hole 902 is not within the outline",
+        "holes 342 and 901 run into each other",
+    ]

@@ -1,5 +1,6 @@
 """The certifier: a good layout passes with known figures, each planted fault gives its finding and no other."""
 
+import tracemalloc
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stages.geometry.arcpath import ArcPath, transform
 from stages.geometry.rigid import Rigid2
-from stages.model.pattern import FlatPattern
+from stages.model.pattern import Contour, FlatPattern
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout
 from stages.nest.legal import certify, passed
 from tests.stages.nest.shapes import box, circle, contour, disc, pattern, rectangle, ring
@@ -23,9 +25,7 @@ GOOD = (
 )
 
 
-def codes(
-    placed: Sequence[Placement], parts: Sequence[FlatPattern] = PARTS, options: NestOptions = OPTIONS
-) -> list[str]:
+def codes(placed: Sequence[Placement], parts: Sequence[FlatPattern] = PARTS) -> list[str]:
     layout = SheetLayout(SHEET, 1, tuple(placed), 0.0)
     metrics, findings = certify(Nesting((layout,)), parts, [SHEET], OPTIONS)
     assert passed(metrics, findings) == (not findings)
@@ -138,6 +138,11 @@ def test_the_gap_of_parts_far_apart_is_still_told() -> None:
     assert figures(placed, parts)["min_gap_mm"] == pytest.approx(240.0, abs=1e-11)
 
 
+def test_a_sheet_on_which_nothing_lies_is_judged_like_any_other() -> None:
+    assert codes(()) == ["missing-copy"] * 3
+    assert codes([Placement("x", 1, Rigid2())], ()) == ["unknown-copy"]
+
+
 def test_more_sheets_than_the_stock_has_are_found() -> None:
     layouts = tuple(SheetLayout(SHEET, index, (one,), 0.0) for index, one in ((1, GOOD[0]), (2, GOOD[2])))
     parts = (rectangle("a", 100.0, 50.0), PARTS[1])
@@ -163,3 +168,27 @@ def test_turned_parts_stay_rigid(angle: float, x: float, y: float) -> None:
 
 def test_the_helper_circle_runs_as_a_hole_should() -> None:
     assert circle(3.0, hole=True).path.bulges[0] == -1.0
+
+
+def test_a_placement_that_changes_the_size_of_a_part_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stretched(path: ArcPath, motion: Rigid2) -> ArcPath:
+        return transform(ArcPath(path.vertices * (1.0 + 1e-7), path.bulges, path.closed), motion)
+
+    monkeypatch.setattr("stages.nest.legal.transform", stretched)
+    assert codes(GOOD) == ["rigid"]
+    assert figures(GOOD, PARTS)["rigid_error_mm"] == pytest.approx(1e-7 * np.hypot(100.0, 50.0), rel=1e-5)
+
+
+def test_of_a_contour_of_many_vertices_some_distances_are_compared_and_it_is_said() -> None:
+    angle = 2.0 * np.pi * np.arange(20_000) / 20_000
+    path = ArcPath(50.0 * np.stack([np.cos(angle), np.sin(angle)], axis=1), np.zeros(angle.size), closed=True)
+    part = pattern("round", Contour((), path, 0.0))
+    layout = SheetLayout(SHEET, 1, (Placement("round", 1, Rigid2(150.0, 100.0, 30.0, mirrored=True)),), 0.0)
+    tracemalloc.start()
+    metrics, findings = certify(Nesting((layout,)), [part], [SHEET], NestOptions(mirror=True))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert findings == ()
+    rigid = next(metric for metric in metrics if metric.name == "rigid_error_mm")
+    assert (rigid.evidence, rigid.value < 1e-11) == ("sampled", True)
+    assert peak < 200e6, "all pairs are 1.6 GB"

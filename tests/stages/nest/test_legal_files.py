@@ -2,16 +2,18 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath, backwards, split, transform
+from stages.geometry.arcpath import ArcPath, area, backwards, bounds, length, split, transform
 from stages.geometry.rigid import Rigid2
+from stages.model.pattern import Contour
 from stages.model.report import Metric
 from stages.model.sheet import NestOptions, Placement, Sheet, SheetLayout, Zone
 from stages.nest.legal import measured
 from stages.nest.legal_files import ReadSheet, certify_contours
 from stages.nest.legal_laid import lay, spread
-from tests.stages.nest.shapes import box, contour, disc, rectangle, ring
+from tests.stages.nest.shapes import angle_piece, box, contour, disc, pattern, rectangle, ring
 
 ZONE = Zone(contour(box(50.0, 50.0, 240.0, 140.0)).path, 1)
 SHEET = Sheet("s", 300.0, 200.0, 1, edge_gap_mm=10.0, zones=(ZONE,))
@@ -102,3 +104,61 @@ def test_the_rules_of_the_sheet_hold_for_contours_read() -> None:
     _, findings = certify_contours([ReadSheet(near, [path], [])], [PARTS[1]], OPTIONS)
     assert [finding.code for finding in findings] == ["edge-gap"]
     assert certify_contours([], PARTS, OPTIONS)[1] == ()
+
+
+STEPPED = pattern("z", contour([(0, 0), (40, 0), (40, 20), (60, 20), (60, 40), (20, 40), (20, 20), (0, 20)]))
+"""Its mirror image has the same box, area and middle."""
+HOLLOW = pattern("c", contour(box(60.0, 40.0), [0.0, -0.3, 0.0, 0.0]))
+"""Turned by half a turn it has the same corners too: only its arc lies on the other side."""
+HALF = pattern("h", contour([(0.0, 0.0), (60.0, 0.0), (0.0, 40.0)]), quantity=2)
+OTHER_WAYS = {
+    "mirrored": (STEPPED, Rigid2(60.0, mirrored=True)),
+    "turned": (angle_piece("l", 60.0, 20.0), Rigid2(60.0, 60.0, 180.0)),
+    "turned about the same corners": (HOLLOW, Rigid2(60.0, 40.0, 180.0)),
+}
+
+
+@pytest.mark.parametrize("name", OTHER_WAYS)
+def test_a_part_that_lies_another_way_in_its_box_is_found(name: str) -> None:
+    part, way = OTHER_WAYS[name]
+    placed = Placement(part.part, 1, Rigid2(100.0, 50.0, 90.0))
+    layout = SheetLayout(SHEET.replace(zones=()), 1, (placed,), 0.0)
+    right = transform(part.outer.path, placed.motion)
+    wrong = transform(transform(part.outer.path, way), placed.motion)
+    assert bounds(wrong) == pytest.approx(bounds(right), abs=1e-9)
+    assert area(wrong) == pytest.approx(area(right), abs=1e-9)
+    for path, wanted in ((right, []), (wrong, ["file-copies"])):
+        _, findings = certify_contours([ReadSheet(layout, [path], [])], [part], OPTIONS)
+        assert [finding.code for finding in findings] == wanted
+
+
+def test_two_parts_that_share_a_box_are_told_apart() -> None:
+    placed = (Placement("h", 1, Rigid2(100.0, 50.0)), Placement("h", 2, Rigid2(160.0, 90.0, 180.0)))
+    layout = SheetLayout(Sheet("s", 300.0, 200.0, 1), 1, placed, 0.0)
+    paths = [transform(HALF.outer.path, one.motion) for one in placed]
+    assert bounds(paths[0]) == pytest.approx(bounds(paths[1]), abs=1e-9)
+    for outer in (paths, paths[::-1]):
+        metrics, findings = certify_contours([ReadSheet(layout, outer, [])], [HALF], NestOptions())
+        assert findings == ()
+        assert metrics[0].value == pytest.approx(0.0, abs=1e-12)
+    _, findings = certify_contours([ReadSheet(layout, [paths[0]] * 2, [])], [HALF], NestOptions())
+    assert {finding.code for finding in findings} == {"file-copies"}
+
+
+def test_a_contour_of_many_vertices_that_were_all_moved_on_is_known_again() -> None:
+    """No vertex of the one lies at one of the other, so that every one is measured."""
+    count = 1000
+    angle = 2.0 * np.pi * np.arange(count) / count
+    bulge = np.full(count, np.tan(np.pi / 2.0 / count))
+    paths = [
+        ArcPath(150.0 + 40.0 * np.stack([np.cos(angle + by), np.sin(angle + by)], axis=1), bulge, closed=True)
+        for by in (0.0, 0.25 * angle[1])
+    ]
+    part = pattern("disc", Contour((), paths[0], 0.0))
+    layout = SheetLayout(Sheet("s", 300.0, 300.0, 1), 1, (Placement("disc", 1, Rigid2()),), 0.0)
+    assert certify_contours([ReadSheet(layout, [paths[1]], [])], [part], NestOptions())[1] == ()
+    flat = np.isin(np.arange(count), np.arange(120, 129))
+    dented = ArcPath(paths[1].vertices, np.where(flat, 0.0, bulge), closed=True)
+    assert bounds(dented) == pytest.approx(bounds(paths[0]), abs=1e-6)
+    assert abs(area(dented) - area(paths[0])) < 1e-5 * length(paths[0]), "their areas agree"
+    assert certify_contours([ReadSheet(layout, [dented], [])], [part], NestOptions())[1] != ()

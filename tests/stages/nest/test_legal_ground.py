@@ -204,3 +204,12 @@ def test_a_square_in_a_circle_touches_it_with_four_corners() -> None:
     part = pattern("q", contour(box(2.0 * half, 2.0 * half, -half, -half)))
     assert codes(part, 0.0, 0.0, replace(HIDE, edge_gap_mm=0.0)) == []
     assert codes(part, 2.0 * HAIR, 0.0, replace(HIDE, edge_gap_mm=0.0)) == ["edge-gap"]
+
+
+def test_a_part_as_high_as_its_outline_that_sticks_out_is_found() -> None:
+    sheet = Sheet("s", 100.0, 100.0, 1, outline=contour(box(100.0, 100.0)).path)
+    part = rectangle("a", 61.0, 100.0 + 2e-13)
+    for x, wanted in ((39.0, []), (50.0, ["edge-gap"])):
+        layout = SheetLayout(sheet, 1, (Placement("a", 1, Rigid2(x, -1e-13)),), 0.0)
+        _, findings = certify(Nesting((layout,)), [part], [sheet], NestOptions())
+        assert [finding.code for finding in findings] == wanted

@@ -120,3 +120,24 @@ def test_within_takes_what_touches_and_nothing_further_out() -> None:
         assert within(inner, bed, clearance(inner.outline, bed.outline, within=0.0)) == wanted, size
     assert not within(region(contour(box(50.0, 50.0, 100.0)).path), bed, 0.0), "beside it, touching"
     assert not within(region(contour(box(50.0, 50.0, 170.0)).path), bed, 70.0), "beside it"
+
+
+@pytest.mark.parametrize("more", [0.0, 1e-13, UNDER])
+@pytest.mark.parametrize("angle", [0.0, 90.0, 30.0])
+def test_what_is_as_high_as_the_bed_does_not_slip_out_between_its_corners(more: float, angle: float) -> None:
+    """It leaves by 11 mm, and its long sides meet the outline at the corners alone, by rounding just outside."""
+    bed = region(at(contour(box(100.0, 100.0)).path, 500.0, 700.0, angle))
+    for x, wanted in ((39.0, True), (50.0, False)):
+        inner = region(at(contour(box(61.0, 100.0 + 2.0 * more, x, -more)).path, 500.0, 700.0, angle))
+        assert within(inner, bed, clearance(inner.outline, bed.outline, within=1.0)) == wanted
+
+
+@pytest.mark.parametrize("by", [0.0, 1e-13, -1e-13])
+def test_a_vertex_that_is_there_twice_but_for_rounding_has_no_say(by: float) -> None:
+    """The corner reaches a plate above and the edge of its bed, wherever the edge between the two points goes."""
+    wedge = region(contour([(100.0, 0.0), (100.0, 100.0), (100.0 + by, 100.0 + abs(by)), (30.0, 0.0)]).path)
+    plate = region(contour(box(200.0, 50.0, 0.0, 100.0)).path)
+    assert common(wedge, plate) == 0.0
+    bed = region(contour(box(100.0, 100.0)).path)
+    assert within(wedge, bed, clearance(wedge.outline, bed.outline, within=1.0))
+    assert common(wedge, region(contour(box(200.0, 50.0, 0.0, 100.0 - OVER)).path)) > 0.0

@@ -104,6 +104,23 @@ def test_a_part_that_is_too_large_is_named_with_its_size_and_the_room() -> None:
     assert not outcome.report.passed
 
 
+def test_the_room_is_that_of_a_roll_of_any_length_and_never_negative() -> None:
+    roll = Sheet("roll", np.inf, 300.0, kind="roll", edge_gap_mm=10.0)
+    cramped = Sheet("cramped", 900.0, 900.0, edge_gap_mm=800.0)
+    wide = [rectangle("wide", 400.0, 400.0)]
+    for stock, room in (([roll], "any length x 280 mm"), ([Sheet("s", 200.0, 200.0), cramped], "200 x 200 mm")):
+        outcome = run(wide, stock)
+        assert "part-too-large" in codes(outcome)
+        assert outcome.report.findings[-1].message.endswith(f"has room for {room}")
+
+
+def test_a_part_that_finds_no_place_beside_defects_is_not_said_to_fit_nowhere() -> None:
+    eaten = Sheet("s", 200.0, 100.0, defects=(contour(box(20.0, 100.0, 90.0, 0.0)).path,))
+    outcome = run([rectangle("a", 120.0, 80.0)], [eaten])
+    assert codes(outcome) == ["part-too-large"]
+    assert "found no place even on an empty sheet" in outcome.report.findings[0].message
+
+
 def test_a_part_may_fit_along_the_diagonal_only_if_it_may_be_turned() -> None:
     square = Sheet("s", 900.0, 900.0)
     assert made(run([rectangle("beam", 1100.0, 40.0)], [square]))
@@ -125,6 +142,19 @@ def test_stock_that_does_not_suffice_is_told_with_the_copies_left() -> None:
 
 def test_no_stock_at_all_is_a_finding() -> None:
     assert codes(run([disc("d", 5.0)], [])) == ["no-stock"]
+
+
+def test_more_copies_than_are_searched_are_placed_all_the_same_and_that_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    engine = Engine(0, command=["no such engine"])
+    parts, options = [rectangle("a", 600.0, 300.0, 5)], NestOptions(gap_mm=5.0, time_limit_s=1.0)
+    monkeypatch.setattr("stages.nest.MANY", 4)
+    monkeypatch.setattr("stages.nest.search.MANY", 4)
+    outcome = nest_with(parts, [PLATE], options, TOL, engine)
+    assert len(made(outcome).layouts) == 5
+    assert (codes(outcome), engine.runs) == (["not-searched"], 0)
+    assert "5 copies" in outcome.report.findings[0].message
 
 
 def test_nothing_to_place_is_an_empty_nest() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, transform
+from stages.geometry.arcpath import ArcPath, backwards, transform
 from stages.geometry.rigid import Rigid2
 from stages.model.pattern import FlatPattern, Mark
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
@@ -67,6 +67,16 @@ def test_a_part_is_held_by_the_smallest_hole_around_it() -> None:
     at = [Rigid2(0.0, 0.0), Rigid2(0.0, 10.0), Rigid2(3.0, 3.0, 50.0, mirrored=True), Rigid2(150.0, 0.0)]
     places = [Placement(one.part, 1, motion) for one, motion in zip(parts, at, strict=True)]
     assert holders(parts, places) == [None, 0, 1, None]
+
+
+@pytest.mark.parametrize("turned_round", [False, True])
+def test_no_part_is_held_by_a_hole_smaller_than_itself_whichever_way_round_it_runs(turned_round: bool) -> None:
+    """Each begins in a hole of the other: taken for its holder, each would hold the other for ever."""
+    whole = ring("a", 40.0, 5.0)
+    one = whole.replace(outer=replace(whole.outer, path=backwards(whole.outer.path))) if turned_round else whole
+    x, y = one.outer.path.vertices[0].tolist()
+    places = [Placement("a", 1, Rigid2()), Placement("a", 2, Rigid2(x, y, 180.0))]
+    assert holders([one, one], places) == [None, None]
 
 
 def test_rings_that_are_linked_like_a_chain_are_still_ordered() -> None:

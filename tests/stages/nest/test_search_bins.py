@@ -46,3 +46,11 @@ def test_sheets_of_a_plan_are_never_left_out_of_the_problem() -> None:
     assert [spot.bin for spot in found.request.start] == list(range(count))
     back = np.array(motions(plan_of(found.request.start, found)))
     assert_near(back, np.array(motions(first)), bound=ROUNDING, why="there and back")
+
+
+def test_sheets_without_room_are_not_offered() -> None:
+    """Their box would be of negative sides, and so of an area above 0."""
+    cramped = Sheet("cramped", 100.0, 100.0, edge_gap_mm=80.0)
+    task, first, found = posed([rectangle("a", 250.0, 200.0, 5)], [SHEET, cramped], NestOptions(4.0))
+    assert {bed.sheet.id for bed in found.beds} == {SHEET.id}
+    assert bins_for(task, first) == list(found.beds)

@@ -283,3 +283,6 @@ def test_what_is_left_is_scrap_below_the_least_size_and_on_hides() -> None:
     assert offcut(NestOptions(offcut_min_mm=139.0, time_limit_s=0.0), plate, part) is not None
     assert offcut(NestOptions(offcut_min_mm=141.0, time_limit_s=0.0), plate, part) is None
     assert offcut(EXACT, hide("h", box(1000.0, 400.0)), part) is None
+    full = rectangle("a", 450.0, 400.0, rotations=(0.0,))
+    whole = NestOptions(offcut_min_mm=0.0, time_limit_s=0.0)
+    assert offcut(whole, Sheet("s", 450.0, 400.0), full) is None, "a strip of no width is no rest"

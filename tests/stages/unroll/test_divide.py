@@ -7,14 +7,15 @@ from math import ceil, hypot, pi
 import numpy as np
 import pytest
 
-from stages.geometry import ruled
+from stages.geometry import arcpath, ruled
 from stages.geometry.curves import Circular, Curve
+from stages.geometry.development import develop
 from stages.model.surface import Certificate, RuledSurface, whole_spans
 from stages.model.tolerances import Tolerances
 from stages.unroll import unroll
-from stages.unroll.divide import blanks, division
+from stages.unroll.divide import STEPS, blanks, division, run_outline, strip_of
 from tests.near import assert_near, assert_relative
-from tests.parts import QUINTIC_TANGENT, RIGHT_FRUSTUM, Table, part, passage
+from tests.parts import QUINTIC_TANGENT, RIGHT_FRUSTUM, Table, part, passage, patches
 
 TOL = Tolerances()
 ZIGZAG = [
@@ -59,6 +60,18 @@ def certificate(table: Table, cut: str) -> Certificate:
 def surface_of(blank: Certificate) -> RuledSurface:
     assert isinstance(blank.surface, RuledSurface)
     return blank.surface
+
+
+def test_the_outline_that_is_looked_at_is_of_arcs_through_the_pattern() -> None:
+    """Of a frustum a sector of a ring: from 1/8 to 3/4 of its v it has 5/8 of the area, and its four sides."""
+    strip = strip_of(develop(patches(RIGHT_FRUSTUM)))
+    slant = hypot(1.5, 4.0)
+    for low, high in ((0, STEPS), (STEPS // 8, STEPS * 3 // 4)):
+        share = (high - low) / STEPS
+        path = run_outline(strip, low, high)
+        assert_relative(arcpath.area(path), share * pi * 4.5 * slant, bound=1e-12, why="arcs of circles, exactly")
+        around = share * 2.0 * pi * 4.5 + 2.0 * slant
+        assert_relative(float(arcpath.lengths(path).sum()), around, bound=1e-12, why="both arcs and both rulings")
 
 
 @pytest.mark.parametrize("table", [RIGHT_FRUSTUM, QUINTIC_TANGENT, RIGHT_FRUSTUM | {"radius1": 0, "height": 0}])

@@ -16,7 +16,7 @@ from stages.model.tolerances import Class, Tolerances, class_by_strain
 from stages.unroll import strain
 from stages.unroll.distortion import measure
 from stages.unroll.strain import StrainField, as_detail, strain_field
-from tests.near import assert_near
+from tests.near import assert_near, assert_relative
 from tests.parts import EXAMPLE_2_PRINTED, OBLIQUE_CONE, RIGHT_FRUSTUM, part, patches
 from tests.warped import CONE_AND_WARPED, POINTED, Strip, saddle
 
@@ -60,6 +60,17 @@ def test_an_even_stretch_has_its_strains_and_its_direction_everywhere(a: float, 
     assert_near(found.least, np.full((4, 5), b), bound=2e-13, why="derivatives at 20 nodes")
     off = np.sin(found.direction - turn)
     assert_near(off, np.zeros((4, 5)), bound=1e-12 / (a - b), why="derivatives over the difference of strains")
+
+
+def test_the_energy_is_the_integral_of_both_squares_on_the_positions() -> None:
+    """Of the unit square (a^2 + b^2); and twice what was made least, which is half of it."""
+    piece = Stretched(0.02, -0.01, 0.7)
+    found = measure(surface((piece.patch,)), Development((piece,)), Tolerances())
+    assert_relative([found.energy_mm2], [0.02**2 + 0.01**2], bound=1e-10, why="strains of 1e-2 to 13 digits")
+    strip = saddle(10.0)
+    made = relaxed(strip, accuracy=1e-5)
+    again = measure(surface(strip), made.development, Tolerances()).energy_mm2
+    assert_relative([again], [2.0 * made.energy], bound=1e-6, why="another quadrature of the same map")
 
 
 def test_the_same_stretch_every_way_has_no_direction() -> None:

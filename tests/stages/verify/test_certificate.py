@@ -6,7 +6,7 @@ from math import atan, cos, degrees, inf, pi, sqrt
 import pytest
 
 from stages.geometry.arrays import EPS
-from stages.geometry.curves import Bezier, bezier
+from stages.geometry.curves import Bezier, bezier, rational
 from stages.geometry.ruled import RuledPatch, between
 from stages.verify import sampled
 from stages.verify.certificate import certify
@@ -244,3 +244,19 @@ def test_a_warp_below_all_rounding_is_bounded_and_not_called_zero(amount: str) -
     assert not proof.developable
     assert proof.warp_rad is not None
     assert 0.0 < proof.warp_rad <= 5.0 * float(amount)
+
+
+def test_a_peak_that_is_a_millionth_of_the_patch_wide_is_bounded_too() -> None:
+    """Weights from 1/1000 to 1000 crowd the warp into v < 1e-5; digits by 40-digit arithmetic from the definitions."""
+    bottom, top = [(0, 0, 0), (5, 9, 1), (10, -3, 0), (20, 0, 0)], [(0, 0, 20), (6, 9, 22), (10, -3, 20), (20, 1, 20)]
+    weights = (["1", "0.001", "1000", "1"], ["1", "0.002", "700", "1"])
+    c0, c1 = (
+        rational([[*(Fraction(w) * x for x in point), Fraction(w)] for point, w in zip(points, by, strict=True)])
+        for points, by in zip((bottom, top), weights, strict=True)
+    )
+    found = certify(between(c0, c1))
+    assert found.warp_rad is not None and found.curvature is not None and found.where is not None
+    warp, curvature = 0.369100954590014588209, 0.0005792537645575379287554
+    assert 0.0 <= found.warp_rad / warp - 1.0 <= 1e-10, "from above, nearly reached"
+    assert 0.0 <= found.curvature / curvature - 1.0 <= 1e-9, "from above, and here reached along an edge"
+    assert_near(found.where, 9.38005703531e-7, bound=1e-10, why="a flat maximum: the square root of rounding")

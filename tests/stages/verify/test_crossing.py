@@ -1,5 +1,7 @@
 """The finding: where a part passes through itself, by the part's own v; and that such a part goes no further."""
 
+from math import hypot, pi
+
 import pytest
 
 from tests.near import assert_near
@@ -36,3 +38,16 @@ def test_the_place_is_given_on_both_sheets_and_in_space() -> None:
 
 def test_a_part_that_does_not_is_not() -> None:
     assert "self-crossing" not in passage(OBLIQUE_CONE).codes("verify")
+
+
+def test_a_part_that_lies_on_itself_is_told_and_not_refused() -> None:
+    """A pipe of radius 10 wound twice: v and v + 1/2 of its 62.8 mm rounds are one ruling; touching is no crossing."""
+    twice = {"center": [0, 0, 0], "radius": 10, "normal": [0, 0, 1], "start": 0, "end": 720}
+    made = passage({"kind": "cylinder", "directrix": {"arc": twice}, "direction": [0, 0, 1], "length": 20})
+    (finding,) = [f for f in made.reports["verify"].findings if f.code == "lies-on-itself"]
+    assert not finding.fatal
+    where = finding.where
+    assert where is not None
+    assert hypot(float(where["x"]), float(where["y"])) == pytest.approx(10.0, abs=1e-9), "the place is on the pipe"
+    apart = abs(float(where["v2"]) - float(where["v"]) - 0.5) * 40 * pi
+    assert apart <= 2.0 * float(where["cell_mm"]), "both sheets meet there, to the cells that were left"

@@ -67,6 +67,15 @@ def test_an_apex_is_seen_and_its_absence_too(table: Table, regular: bool) -> Non
     assert sampled.survey(patches(table)[0], 0).regular is regular
 
 
+@pytest.mark.parametrize(("last", "regular"), [(1e-3, True), (1e-9, False)])
+def test_a_ruling_has_no_normal_if_it_is_nothing_beside_the_longest(last: float, regular: bool) -> None:
+    """Rulings along z on an arc of radius 10, from 1 mm down to `last`: the normal is 10 times as long as they are."""
+    shrinking = Circular(Z, NONE, NONE, (last - 1.0) * Z, 0.0, 1.0)
+    arc = Circular(NONE, 10.0 * X, 10.0 * Y, NONE, 0.0, 1.0)
+    found = sampled.survey(RuledPatch(arc, arc.replace(centre=Z, W=shrinking.W), shrinking), 0)
+    assert found.regular is regular
+
+
 def strip(profile: Circular) -> RuledSurface:
     """Return the cylinder along y over a curve in the plane of x and z."""
     patch = between(profile, profile.replace(centre=profile.centre + Y))

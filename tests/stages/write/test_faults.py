@@ -87,6 +87,19 @@ def test_an_empty_drawing_is_found() -> None:
     assert codes(stream.getvalue()) == {"readback-empty"}
 
 
+def test_what_is_cut_repeats_no_vertex_open_or_not() -> None:
+    """What is left of an outline that shares cuts is open too."""
+
+    def with_open_cut(*x: float) -> set[str]:
+        def change(document: Document) -> None:
+            attributes = {"layer": "CUT_OUTER", "color": 1}
+            document.modelspace().add_lwpolyline([(at, -50.0) for at in x], dxfattribs=attributes)
+
+        return codes(with_change(change))
+
+    assert with_open_cut(0.0, 10.0, 10.0, 20.0) - with_open_cut(0.0, 10.0, 20.0) == {"readback-repeated-vertex"}
+
+
 def side_by_side(gap: float) -> tuple[list[FlatPattern], Nesting]:
     places = tuple(Placement("plate", k + 1, Rigid2((100.0 + gap) * k, 10.0)) for k in range(2))
     return [plate()], Nesting((SheetLayout(Sheet("stock", 500.0, 300.0), 1, places, 0.1),))

@@ -1,16 +1,20 @@
 """Helps for the process in cut files: in every flavour, as read again; start points, tabs, and what is cut in all."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import area, length
+from stages.geometry.arcpath import ArcPath, area, length
+from stages.geometry.arrays import Points2
+from stages.geometry.rigid import Rigid2, matrix
 from stages.model.cutfile import Machine
-from stages.model.helps import Helps, Tabs
-from stages.model.pattern import Mark
-from stages.model.sheet import Nesting
+from stages.model.helps import Helps, StartRule, Tabs
+from stages.model.pattern import FlatPattern, Mark
+from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.write.bridged import bridged
+from stages.write.helpplans import Plan, plan
 from stages.write.readback import read
 from tests.near import assert_near
 from tests.stages.write.helpcases import (
@@ -124,6 +128,69 @@ def test_tabs_stay_clear_of_bend_lines() -> None:
     away = np.hypot(*(np.concatenate(ends)[:, None] - np.concatenate(lines)[None]).transpose(2, 0, 1))
     assert len(lines) == 2 * 6
     assert away.min() >= 2.0 - ROUNDING
+
+
+def test_tabs_closer_than_there_is_room_for_are_said_to_be_missing() -> None:
+    outcome = made(machine(replace(NONE, tabs=Tabs(0.4, spacing_mm=1e-9))), (plate(), sector()))
+    (told,) = [one for one in outcome.report.findings if one.code == "tabs" and "stock-2" in one.message]
+    assert told.where is not None
+    assert 0 < int(told.where["tabs"]) < 320.0 / (0.4 + BEAM_MM)
+    assert "tab-left-out" in codes(outcome)
+
+
+TURNS = (0.0, 17.0, 90.0, 213.0)
+
+
+def turned_copies(helps: Helps, *, mirrored: bool, part: FlatPattern) -> list[list[Points2]]:
+    """Return where each copy is cut, turned back into the frame of its part: the vertices of its paths."""
+    places = [
+        Placement("plate", k + 1, Rigid2(150.0 + 250.0 * k, 150.0, turn, mirrored)) for k, turn in enumerate(TURNS)
+    ]
+    layout = SheetLayout(Sheet("stock", 1100.0, 300.0), 1, tuple(places), 0.2)
+    outcome = made(machine(helps), (part,), Nesting((layout,)))
+    assert outcome.report.passed, outcome.report.findings
+    text = {file.path: file.text for file in outcome.product}["cut/stock-1.dxf"]
+    cut = [one.path for one in read(text).entities if one.layer in ("LEAD", "CUT_INNER", "CUT_OUTER") and one.path]
+    rows = np.array_split(np.arange(len(cut)), len(TURNS))
+    return [
+        [(cut[number].vertices - [one.motion.x, one.motion.y]) @ matrix(one.motion) for number in row]
+        for one, row in zip(places, rows, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("mirrored", [False, True], ids=["as drawn", "mirrored"])
+@pytest.mark.parametrize("helps", [TABS, LEADS, replace(TABS, lead_in=LEADS.lead_in)], ids=["tabs", "leads", "both"])
+def test_copies_of_a_part_are_cut_alike_however_they_are_turned(helps: Helps, mirrored: bool) -> None:
+    first, *others = turned_copies(helps, mirrored=mirrored, part=plate())
+    for other in others:
+        for one, same in zip(first, other, strict=True):
+            assert_near(same, one, bound=ROUNDING, why="the same places of the part")
+
+
+@pytest.mark.parametrize(("start", "plans"), [("corner", 3), ("left", 4 * 3)])
+def test_copies_have_one_plan_unless_the_rule_names_a_side_of_the_sheet(
+    monkeypatch: pytest.MonkeyPatch, start: StartRule, plans: int
+) -> None:
+    """Four copies of a plate with two holes, each turned in another way."""
+    made_for: list[ArcPath] = []
+
+    def counted(contour: ArcPath, *args: Any, **keys: Any) -> Plan:
+        made_for.append(contour)
+        return plan(contour, *args, **keys)
+
+    monkeypatch.setattr("stages.write.helps.plan", counted)
+    turned_copies(replace(LEADS, start=start), mirrored=False, part=plate())
+    assert len(made_for) == plans
+
+
+def test_whether_a_part_is_small_does_not_depend_on_how_it_lies() -> None:
+    """A bar of 100 x 10 is 78 high where it lies at 45 degrees; it has a side of 10 all the same."""
+    bar = pattern("plate", contour(polygon_edges((0.0, 0.0), (100.0, 0.0), (100.0, 10.0), (0.0, 10.0))), (50.0, 5.0))
+    counts = [
+        len(copy)
+        for copy in turned_copies(replace(NONE, tabs=Tabs(0.4, count=3, below_mm=11.0)), mirrored=False, part=bar)
+    ]
+    assert counts == [3] * len(TURNS)
 
 
 # Length of the cuts and pierces

@@ -33,6 +33,17 @@ def test_a_lead_into_a_neighbour_makes_the_contour_begin_elsewhere() -> None:
     assert (leads.where["leads"], leads.where["moved"]) == (3, 2)
 
 
+def test_a_lead_along_the_chord_of_its_arc_is_as_good_as_any() -> None:
+    """At 45 degrees to a quarter of a circle it begins on the chord: nothing is in its way, however the part lies."""
+    for sheet in usual(LEADS).product[2:]:
+        (told,) = [
+            one for one in usual(LEADS).report.findings
+            if one.code == "leads" and one.where is not None and one.where["file"] == sheet.path
+        ]  # fmt: skip
+        assert told.where is not None
+        assert told.where["moved"] == 0
+
+
 def test_where_no_lead_fits_that_is_said_and_the_part_is_cut() -> None:
     tight = Sheet("stock", 54.0, 34.0)
     bare = [one.replace(inner=(), marks=()) for one in PARTS]

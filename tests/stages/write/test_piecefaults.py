@@ -1,5 +1,6 @@
 """Every fault of a pattern file is found by itself, in a file that is otherwise good; good files have none."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -28,6 +29,7 @@ from tests.stages.write.plantedpieces import (
     on,
     text_of,
     told,
+    validation_off,
 )
 
 
@@ -51,6 +53,12 @@ def test_faults_of_any_drawing_are_found_in_a_pattern_file_too(code: str, change
 def test_what_cannot_be_read_and_what_is_not_ascii_is_said() -> None:
     assert codes("no drawing") == {"readback-complaint"}
     assert codes(good().replace("Piece Name: flap", "Piece Name: fl\u00e4p")) == {"readback-complaint"}
+
+
+@pytest.mark.parametrize("said", ["nan", "inf", "much"])
+def test_a_tolerance_that_is_no_number_excuses_nothing(said: str) -> None:
+    key = "Curve Tolerance: "
+    assert codes(re.sub(f"{key}.*", f"{key}{said}", changed(validation_off))) == {"pattern-validation"}
 
 
 def test_pieces_that_are_called_the_same_are_found() -> None:

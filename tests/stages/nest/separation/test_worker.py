@@ -10,6 +10,7 @@ from shapely import Polygon, box
 
 from stages.nest.separation import worker
 from stages.nest.separation.problem import NOWHERE, RECTANGLE, Item, Problem, Spot
+from stages.nest.separation.sharing import Bench
 from stages.nest.separation.wire import Request, request_line
 from tests.stages.nest.separation.scenes import (
     BY_QUARTERS,
@@ -190,6 +191,20 @@ def test_it_says_that_it_is_ready_and_then_layouts(
     assert first == {"ready": True}
     assert others
     assert all(isinstance(one, dict) and [len(row) for row in one["placed"]] == [5, 5] for one in others)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_thread_that_fails_is_an_error_that_it_names(
+    threads: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def failing(bench: Bench, *_: object) -> None:
+        raise IndexError("planted")
+
+    problem = Problem((kind(oblong(10.0, 10.0)),), (Item(0, 0),) * 2, ((90.0, 25.0),))
+    start = (Spot(0, 0, 0.0, 5.0, 5.0), Spot(0, 0, 0.0, 80.0, 5.0))
+    monkeypatch.setattr("stages.nest.separation.strategy.shorter", failing)
+    *_, last = said(request_line(ask(problem, start, seconds=0.1, threads=threads)), monkeypatch, capsys)
+    assert last == {"error": "IndexError: planted"}
 
 
 @pytest.mark.parametrize("line", ["hello\n", "", "{}\n"])
