@@ -14,7 +14,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from stages.construct.minimax import solve
 from stages.construct.quintic import cone_ends
 from stages.geometry.cover import doubled
-from stages.geometry.crossing import crossings
+from stages.geometry.crossing import Search, crossings
 from stages.geometry.development import develop
 from stages.geometry.relaxed import relaxed
 from stages.geometry.ruled import size_of
@@ -96,12 +96,12 @@ def test_the_distortion_of_a_quintic_patch(name: str, benchmark: BenchmarkFixtur
 @pytest.mark.parametrize("name", PATCHES)
 def test_whether_a_quintic_patch_crosses_itself(name: str, benchmark: BenchmarkFixture) -> None:
     made = patches(PATCHES[name])
-    assert benchmark(crossings, made, size_of(made)) == []
+    assert benchmark(crossings, made, size_of(made)) == Search((), None)
 
 
 def test_whether_a_helical_strip_of_ten_close_turns_crosses_itself(benchmark: BenchmarkFixture) -> None:
     made = helix_strip(100.0, 5.0, 10.0).patches
-    assert benchmark(crossings, made, size_of(made)) == []
+    assert benchmark(crossings, made, size_of(made)) == Search((), None)
 
 
 def test_the_area_that_three_turns_cover_again(benchmark: BenchmarkFixture) -> None:

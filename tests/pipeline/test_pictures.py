@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from pipeline.report import pictures_canvas as page
-from pipeline.report.pictures import part_picture, sheet_picture
+from pipeline.report.pictures import arrangement, part_picture, sheet_picture
 from pipeline.report.pictures_edges import corner_points, hole_text, rulings, side_area, side_length, sides
 from pipeline.report.pictures_flat import pattern_room
 from pipeline.report.pictures_flat_names import upright
@@ -28,6 +28,7 @@ from stages.model.surface import RuledSurface, Surface
 from stages.model.tolerances import Tolerances
 from stages.unroll import unroll
 from stages.verify import verify
+from tests.stages.write.patterns import plate
 
 TOL = Tolerances()
 FRUSTUM = {"kind": "cone", "radius0": 30, "radius1": 15, "height": 40}
@@ -242,3 +243,12 @@ def test_a_round_hole_is_named_by_its_diameter() -> None:
     assert hole_text(pattern.inner[0].path) == "⌀80.00"
     assert hole_text(pattern.outer.path) == "300.00 × 200.00"
     assert [page.length_text(mm) for mm in (0.5, 1e4)] == ["0.500", "10000.0"]
+
+
+def test_a_wide_surface_stands_over_its_pattern_and_a_tall_one_beside_it() -> None:
+    around = page.Box(0.0, 0.0, 10.0, 6.0)
+    wide, tall = (arrangement(around, seen, plate()) for seen in ((10.0, 1.0), (1.0, 10.0)))
+    assert (wide.formed.width, wide.flat.top) == (10.0, wide.formed.bottom)
+    assert (tall.formed.height, tall.flat.left) == (6.0, tall.formed.right)
+    assert wide.formed.height < tall.formed.height
+    assert tall.formed.width < wide.formed.width

@@ -19,7 +19,7 @@ from tests.pipeline.test_sewing import CUP, ROUND, codes, metric, part, run
         ("depth = 4", "depth = 6.5", "notch-too-deep"),
         ('fraction = "1/4"', "distance = 200", "notch-off-edge"),
         ("ends = [5, 5]", "ends = [50, 40]", "stitch-no-room"),
-        ("diameter = 1\n", "diameter = 13\n", "holes-cross"),
+        ("diameter = 1\n", "diameter = 13\n", "stitch-overlap"),
         ("margin = 3", 'margin = 0.5\nline = "cut"', "slit-outside"),
     ],
 )

@@ -3,12 +3,17 @@
 import json
 import re
 from collections.abc import Callable, Mapping
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
+from pipeline.report.entries import MetricEntry
 from pipeline.report.render import Made
+from pipeline.report.shopentries import PartEntry
 from pipeline.report.traveller import traveller_pdf
 from pipeline.report.traveller_numbers import degrees, millimetres, plain
+from pipeline.report.traveller_part import nearest
 from tests.pdfs import all_texts
 from tests.pipeline.jobs import CONE, STOCK
 from tests.pipeline.test_traveller import PLATE, produced
@@ -70,3 +75,19 @@ def test_a_number_that_is_not_in_the_report_is_seen(job: dict[str, bytes]) -> No
     (lost,) = (span for span in without["parts"][1]["tape"]["spans"] if span["what"] == "c0")
     written = millimetres(lost.pop("along_mm"))
     assert foreign(found, without, WAYS) == [written]
+
+
+def test_checks_that_failed_come_first_then_those_nearest_to_their_limits_and_what_is_no_number_last() -> None:
+    checks: dict[str, tuple[float | bool | None, float | bool, bool]] = {
+        "nothing of it": (0.0, 1.0, True),
+        "half": (0.5, 1.0, True),
+        "a truth": (True, True, True),
+        "most": (1.8, 2.0, True),
+        "nothing allowed": (0.3, 0.0, True),
+        "unknown": (None, 1.0, False),
+        "beyond": (3.0, 2.0, False),
+    }
+    metrics = tuple(MetricEntry(name, value, "mm", "sampled", limit, ok) for name, (value, limit, ok) in checks.items())
+    part = SimpleNamespace(stages=(SimpleNamespace(stage="unroll", metrics=metrics),))
+    found = [metric.name for _, metric in nearest(cast("PartEntry", part))]
+    assert found == ["beyond", "unknown", "most", "half", "nothing of it", "a truth", "nothing allowed"]
