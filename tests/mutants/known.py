@@ -1,6 +1,7 @@
 """Mutants that no test can tell from the program, each with the reason: they are counted apart."""
 
 EQUIVALENT: dict[int, str] = {
+    16: "the edges at an apex have no length: any place along one is the apex",
     49: "the error is caught where the cut is tried, a few lines above, and its two numbers are never read",
     57: "asking for the exact box of more paths than may swell costs time alone: the box of all of them is the same",
 }
