@@ -7,9 +7,9 @@ from shapely import Point, affinity, box
 
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.beds import bed
-from stages.nest.blank import as_blank, edges, turned
+from stages.nest.blank import Placed, as_blank, edges, turned
 from stages.nest.cells import cover, framed, widest_gap
-from stages.nest.raster import cut_off, empty_board, fill_raster
+from stages.nest.raster import cut_off, empty_board, fill_raster, free_at
 from tests.near import assert_near
 from tests.stages.nest.shapes import angle_piece, disc, rectangle, ring, sector
 from tests.stages.nest.stock import hide, lobed, outline, roll
@@ -95,3 +95,13 @@ def test_hopeless_parts_are_passed_over_and_the_next_are_placed() -> None:
     placed = fill_raster(room, [(2, (big,)), (3, (small,))])
     assert [one.turned is big for one in placed].count(True) == 1
     assert len(placed) == 4
+
+
+def test_a_place_in_the_nook_of_another_part_is_free_and_one_on_its_legs_is_not() -> None:
+    parts = angle_piece("l", 80.0, 20.0), rectangle("r", 50.0, 50.0)
+    nook, piece = (turned(as_blank(0, one, NestOptions()), 0.0) for one in parts)
+    placed = [Placed(nook, 10.0, 10.0)]
+    assert free_at(placed, piece, 35.0, 35.0)
+    assert not free_at(placed, piece, 25.0, 35.0)
+    assert free_at(placed, piece, 200.0, 35.0)
+    assert free_at([], piece, 10.0, 10.0)
