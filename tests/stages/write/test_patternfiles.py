@@ -10,6 +10,7 @@ from itertools import pairwise
 import ezdxf
 import numpy as np
 import pytest
+from ezdxf import bbox
 from ezdxf.document import Drawing as Document
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -56,6 +57,15 @@ def test_every_part_has_a_file_of_its_own_and_all_are_in_one() -> None:
     assert list(found) == [*(f"flat/{part.part}.dxf" for part in PARTS), "pieces/bag.dxf"]
     names = [block.name for block in read_pieces(found["pieces/bag.dxf"]).blocks]
     assert names == ["FLAP_M", "PLATE_M", "SECTOR_M", "STRIP_M", "DROP_M"]
+
+
+def test_the_style_stands_below_all_pieces_and_begins_where_the_leftmost_does() -> None:
+    found = document(texts()["pieces/bag.dxf"]).modelspace()
+    low = bbox.extents(found.query("INSERT")).extmin
+    style = [text for text in found.query("TEXT") if text.dxf.insert.y < low.y]
+    assert any(text.dxf.text.startswith("Curve Tolerance") for text in style)
+    assert style == list(found.query("TEXT"))
+    assert_near(max(abs(text.dxf.insert.x - low.x) for text in style), 0.0, bound=1e-3, why="arcs by chords")
 
 
 def test_an_apex_is_one_turn_point() -> None:

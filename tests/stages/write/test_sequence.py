@@ -9,7 +9,8 @@ import pytest
 from stages.geometry.arcpath import ArcPath
 from stages.write import write
 from stages.write.chains import Entity
-from stages.write.sequence import MARKS_FIRST, order_faults
+from stages.write.closing import Closed
+from stages.write.sequence import MARKS_FIRST, order_faults, shared_order_faults
 from tests.stages.write.patterns import nesting, plate, sector
 from tests.stages.write.planted import MACHINE, codes
 
@@ -49,6 +50,7 @@ OTHER = square("CUT_OUTER", 20.0, 0.0, 10.0)
 HOLE = square("CUT_INNER", 2.0, 2.0, 1.0)
 MARK = path("MARK", (5.0, 5.0), (6.0, 5.0), closed=False)
 NOT_HELD = ["LWPOLYLINE on MARK comes before an outline that does not hold it"]
+NOT_BEFORE = "LWPOLYLINE on MARK does not come before an outline that holds it"
 
 
 def line_to(x: float) -> Entity:
@@ -78,3 +80,9 @@ def test_what_is_no_path_has_its_place_in_the_order_alone() -> None:
     point = Entity("POINT", "CUT_INNER", 5, None, closed=False)
     assert list(order_faults([MARK, point, OUTER], BESIDE_MM)) == []
     assert list(order_faults([point, MARK, OUTER], BESIDE_MM)) == [MARKS_FIRST]
+
+
+@pytest.mark.parametrize(("beyond", "told"), [(0.9, []), (1.1, [NOT_BEFORE])])
+def test_where_cuts_are_shared_an_outline_holds_what_reaches_a_hair_beyond_it(beyond: float, told: list[str]) -> None:
+    entities = [line_to(10.0 + beyond * BESIDE_MM), OUTER]
+    assert list(shared_order_faults(entities, Closed((), ()), BESIDE_MM)) == told
