@@ -35,7 +35,8 @@ from tests.pipeline.test_meshfiles import binary_stl
 ABOUT = (
     "Whole jobs from the file to report and DXF text, without stock, but where a row says otherwise; memory beyond "
     "what the process had before. The exponent is that from the size before: 1 is in proportion. A strip has 1000 "
-    "points at most; a mesh is laid flat up to 400 000 triangles, one that is recognised has no such cap."
+    "points at most; a mesh is laid flat up to 400 000 triangles, one that is recognised has no such cap. "
+    "The smallest batch starts the pool, the others find it there."
 )
 HEAD = 'schema = 1\n[report]\nformats = ["json"]\n[[part]]\nname = "part"\n[part.surface]\n'
 STRIP = 'kind = "quintic-strip"\nruling = [0, 0, 500]\nthrough = [\n'
