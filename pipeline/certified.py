@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from pipeline.inturn import Each, in_turn
-from stages.geometry.arcpath import transform
+from stages.geometry.paths.arcpath import transform
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric, Outcome
 from stages.model.sheet import Nesting, NestOptions, SheetLayout
-from stages.nest.legal_files import ReadSheet, certify_contours
+from stages.nest.legal.files import ReadSheet, certify_contours
 from stages.write.bridged import bridged
 from stages.write.chains import Entity
 from stages.write.closing import closed_again

@@ -158,10 +158,10 @@ def compare(
     as_json: bool,
 ) -> None:
     """Compare measurements of made parts with a finished job, and fit kerf, K-factor and springback to them."""
-    from pipeline.asmade import FILE, comparison, keep
-    from pipeline.asmade_document import compare_document, compare_lines
-    from pipeline.asmade_nominal import nominal_of
-    from pipeline.asmade_sheet import template
+    from pipeline.asmade.compare import FILE, comparison, keep
+    from pipeline.asmade.document import compare_document, compare_lines
+    from pipeline.asmade.nominal import nominal_of
+    from pipeline.asmade.sheet import template
     from pipeline.report.document import encoded
 
     if empty == (measured is not None):
@@ -191,7 +191,7 @@ def init(kind: str) -> None:
 @click.option("--compare", "which", flag_value="compare", help="Of compare.json.")
 def schema(which: str | None) -> None:
     """Print the JSON Schema of the job file, or of another file."""
-    from pipeline.asmade_document import compare_schema
+    from pipeline.asmade.document import compare_schema
     from pipeline.kinds import json_schema
     from pipeline.report.schema import report_schema
     from pipeline.sidefiles import side_schema

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from hashlib import _Hash as Hash
 
     from pipeline.layouts import Stored
-    from stages.geometry.mesh import Mesh
+    from stages.geometry.mesh.mesh import Mesh
 
 
 @dataclass(frozen=True, slots=True)

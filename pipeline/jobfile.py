@@ -36,7 +36,7 @@ from stages.model.sewing import mate_troubles
 from stages.model.tolerances import Class, Tolerances
 
 if TYPE_CHECKING:
-    from pipeline.cadfiles import CadSource
+    from pipeline.cad.files import CadSource
     from pipeline.meshsources import MeshSource
 
 T = TypeVar("T", bound=Table)

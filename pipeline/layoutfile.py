@@ -18,7 +18,7 @@ from pipeline.paths import Path
 from pipeline.placed import placed
 from pipeline.units import describe
 from stages.errors import Problem
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.caps import MOST_COPIES
 
 SCHEMA = "planish-layout/1"

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 
 if TYPE_CHECKING:
     from trimesh import Trimesh

@@ -18,7 +18,7 @@ from pipeline.decode import ResolveError
 from pipeline.meshfiles import LARGEST_FILE, MeshFileError, format_of, parsed
 from pipeline.reach import Reach
 from pipeline.units import MM_PER
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 from stages.model.meshes import MeshFile, MeshNormals
 from stages.model.report import Finding
 

@@ -19,7 +19,7 @@ from pipeline.sidefiles import side_files
 from pipeline.store import REPORT
 
 if TYPE_CHECKING:
-    from stages.geometry.meshflat import MeshMap
+    from stages.geometry.mesh.flat import MeshMap
 
 SLOW_FORMATS = frozenset({"png", "traveller"})
 """Left out after an interruption: they take 0.1 to 0.3 s a part, the rest together a second for dozens of parts."""
@@ -62,8 +62,8 @@ def views(result: JobResult) -> dict[str, bytes]:
     """Return what the page of the report and the traveller draw, if the job asks for one of them."""
     if not {"html", "traveller"} & {*result.job.formats}:
         return {}
-    from pipeline.report.viewdata import view_bytes, view_document
-    from pipeline.report.viewentries import VIEW
+    from pipeline.report.view.data import view_bytes, view_document
+    from pipeline.report.view.entries import VIEW
 
     return {VIEW: view_bytes(view_document(result, worst_v))}
 
@@ -83,7 +83,7 @@ Drawn = Callable[[], bytes]
 
 def _part_pictures(result: JobResult) -> Iterator[tuple[str, Drawn]]:
     """Yield the name of the picture of each surface, and who draws it."""
-    from pipeline.report.pictures import part_picture
+    from pipeline.report.pictures.part import part_picture
 
     names = file_names(result.parts, result.job)
     for run in result.parts:
@@ -95,7 +95,7 @@ def _part_pictures(result: JobResult) -> Iterator[tuple[str, Drawn]]:
 
 def _sheet_pictures(result: JobResult) -> Iterator[tuple[str, Drawn]]:
     """Yield the name of the picture of each nested sheet, and who draws it."""
-    from pipeline.report.pictures import sheet_picture
+    from pipeline.report.pictures.part import sheet_picture
 
     names = file_names(result.parts, result.job)
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pipeline.readpieces import NoPatternError, piece_pattern
-from stages.geometry.arcpath import ArcPath, area, backwards
-from stages.geometry.pathedges import edges_of
+from stages.geometry.paths.arcpath import ArcPath, area, backwards
+from stages.geometry.paths.edges import edges_of
 from stages.model.cutfile import PROFILES, Layer
 from stages.model.pattern import MARK_LAYERS, Contour, FlatPattern, Mark, MarkLayer, Text
 from stages.model.patternlayers import is_pattern_profile

@@ -10,9 +10,9 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Vector2, norm
-from stages.geometry.pathedges import edges_of
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.edges import edges_of
 from stages.model.cutfile import Layer
 from stages.model.features import NotchKind
 from stages.model.pattern import (

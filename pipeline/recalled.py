@@ -17,11 +17,11 @@ from msgspec import Struct
 
 from pipeline.sideentries import DrillSide, FeatureSide, FileSide, NotchSide, Purpose, Row3
 from pipeline.store import digest
-from stages.geometry.arcpath import ArcPath, chords, distances, piece_count, sweeps
 from stages.geometry.arrays import Vector2, norm
-from stages.geometry.biarc import trace
-from stages.geometry.pathedges import edges_of
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.paths.arcpath import ArcPath, chords, distances, piece_count, sweeps
+from stages.geometry.paths.biarc import trace
+from stages.geometry.paths.edges import edges_of
 from stages.model.pattern import Contour, Drill, FlatPattern, NotchPlace, Spot
 
 

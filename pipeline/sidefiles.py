@@ -131,7 +131,7 @@ def _placed(result: "JobResult", sheets: Sequence[tuple["SheetLayout", float]]) 
 
 def _alone(result: "JobResult", path: str, names: FileNames) -> Copy:
     """Return the part that a drawing shows in its flat frame."""
-    from stages.geometry.rigid import Rigid2
+    from stages.geometry.curves.rigid import Rigid2
 
     drawn = {safe: part for part, safe in names.parts.items()}
     paths = {f"flat/{safe}.dxf": part for safe, part in drawn.items()}

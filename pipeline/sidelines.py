@@ -12,7 +12,7 @@ from pipeline.sideentries import BendSide, Ends, Pair, RollSide, Row3, Side
 
 if TYPE_CHECKING:
     from pipeline.run import PartRun
-    from stages.geometry.rigid import Rigid2
+    from stages.geometry.curves.rigid import Rigid2
 
 Radii = tuple[float | None, float | None]
 
@@ -86,7 +86,7 @@ class Copy:
 
     def matrix(self) -> tuple[Row3, Row3]:
         """Return what takes a point of the flat frame to the drawing."""
-        from stages.geometry.rigid import matrix
+        from stages.geometry.curves.rigid import matrix
 
         (a, c), (b, d) = matrix(self.motion).tolist()
         return (a, c, self.motion.x), (b, d, self.motion.y)

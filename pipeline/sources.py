@@ -24,7 +24,7 @@ from stages.model.meshes import MeshFile, MeshNormals
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
-    from pipeline.cadfiles import CadSource
+    from pipeline.cad.files import CadSource
     from pipeline.drawings import Piece
     from pipeline.meshsources import MeshSource
 
@@ -99,7 +99,7 @@ class Sources:
 
     def _read_faces(self, table: FaceFile, path: Path) -> None:
         """Read the faces of a part."""
-        from pipeline.cadfiles import cad_source
+        from pipeline.cad.files import cad_source
 
         source = cad_source(self.reach, table)
         if (table.file, source.digest) not in self.digests:

@@ -11,8 +11,8 @@ from stages.model.scalars import Angle
 from stages.model.sheet import NestOptions, Sheet, Zone
 
 if TYPE_CHECKING:
-    from stages.geometry.arcpath import ArcPath
-    from stages.geometry.usable import Blocked, Kept
+    from stages.geometry.paths.arcpath import ArcPath
+    from stages.geometry.paths.usable import Blocked, Kept
 
 SINGLE = ("hide", "remnant")
 """Kinds of which there is one unless the job says more: no two are alike."""
@@ -75,7 +75,7 @@ def _sheet(row: StockTable, grain: Angle | None, shapes: "Shapes") -> Sheet:
 def _size(row: StockTable, outline: "ArcPath | None") -> tuple[float, float]:
     """Return width and height, mm: along and across a roll, those of the box of an outline."""
     if outline is not None:
-        from stages.geometry.arcpath import bounds
+        from stages.geometry.paths.arcpath import bounds
 
         low_x, low_y, high_x, high_y = bounds(outline)
         return high_x - low_x, high_y - low_y

@@ -23,7 +23,7 @@ from stages.model.scalars import Angle
 
 if TYPE_CHECKING:
     from pipeline.drawings import Piece
-    from stages.geometry.arcpath import ArcPath
+    from stages.geometry.paths.arcpath import ArcPath
 
 T = TypeVar("T")
 
@@ -140,8 +140,8 @@ def _refuse_strays(rows: Sequence[StockTable], drawn: Drawn) -> None:
 def _refuse_holes(rows: Sequence[StockTable]) -> None:
     """Refuse an outline that lies within another: taken for a piece of stock, parts would lie on it and around it."""
     from pipeline.stockshapes import CHORD_MM
-    from stages.geometry.arcpath import bounds
-    from stages.geometry.usable import within
+    from stages.geometry.paths.arcpath import bounds
+    from stages.geometry.paths.usable import within
 
     paths = [_outline(row) for row in rows] if len(rows) > 1 else []
     boxes = [bounds(path) for path in paths]
@@ -155,7 +155,7 @@ def _refuse_holes(rows: Sequence[StockTable]) -> None:
 def _lies_on(row: StockTable, spec: CurveSpec) -> bool:
     """Return whether a defect or a zone has a point in common with a piece of stock."""
     from pipeline.stockshapes import CHORD_MM, blocked
-    from stages.geometry.usable import touch
+    from stages.geometry.paths.usable import touch
 
     outline = _outline(row)
     return any(touch(outline, path, accuracy=CHORD_MM) for path in _shape(blocked, spec).paths)
@@ -166,7 +166,7 @@ def _holds(row: StockTable, point: tuple[float, float]) -> bool:
     import numpy as np
 
     from pipeline.stockshapes import CHORD_MM
-    from stages.geometry.usable import holds
+    from stages.geometry.paths.usable import holds
 
     return holds(_outline(row), np.array(point), accuracy=CHORD_MM)
 

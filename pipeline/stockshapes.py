@@ -12,8 +12,8 @@ import numpy as np
 
 from stages.construct.stockoutline import NoContourError, closed_edges
 from stages.errors import NoSolutionError
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.usable import Blocked, Kept, NoAreaError, inside, outside, touch, within
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.usable import Blocked, Kept, NoAreaError, inside, outside, touch, within
 from stages.model.curves import CurveSpec, Trouble, is_whole
 from stages.model.tolerances import Tolerances
 

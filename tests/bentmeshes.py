@@ -13,8 +13,8 @@ import numpy as np
 import shapely
 
 from stages.geometry.arrays import Array, Points2, Points3, Triples
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshtopology import boundary_loops, edges_of
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import boundary_loops, edges_of
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,8 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
-from pipeline import cad_3dm, cad_step
+from pipeline.cad import rhino as cad_3dm
+from pipeline.cad import step as cad_step
 from stages.model.cadface import CadBody, CadFace
 from stages.model.faces import FaceFile
 from stages.model.material import Part

@@ -15,8 +15,8 @@ from fractions import Fraction
 import numpy as np
 
 from stages.geometry.arrays import Values
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshtopology import boundary_loops, edges_of
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import boundary_loops, edges_of
 from stages.model.material import Material, Part
 from stages.model.meshes import MeshFile
 from stages.model.part import PartSpec

@@ -13,10 +13,10 @@ from scipy.integrate import solve_ivp
 from scipy.spatial import Delaunay
 
 from stages.geometry.arrays import Array, Points2, Triples, Values
-from stages.geometry.curves import Circular
-from stages.geometry.development import develop
-from stages.geometry.mesh import Mesh
-from stages.geometry.ruled import RuledPatch, between, warp
+from stages.geometry.curves.curves import Circular
+from stages.geometry.flat.development import develop
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.ruled.ruled import RuledPatch, between, warp
 from tests.parts import QUINTIC_TANGENT, Table, patches
 from tests.warped import saddle, shaken
 

@@ -9,8 +9,8 @@ from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation
 
 from stages.geometry.arrays import Array, Numbers, Points2, Points3
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshtopology import boundary_loops, edges_of
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import boundary_loops, edges_of
 
 Lift = Callable[[Points2], Points3]
 JITTER = 0.35

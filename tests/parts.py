@@ -9,7 +9,7 @@ from itertools import pairwise
 import msgspec
 
 from stages.construct import construct
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.material import Material, Part
 from stages.model.part import PartSpec
 from stages.model.pattern import FlatPattern

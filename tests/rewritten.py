@@ -5,8 +5,8 @@ from fractions import Fraction
 from math import comb
 from typing import TypeVar
 
-from stages.geometry.curves import Bezier, bezier, elevated
-from stages.geometry.ruled import RuledPatch, between, part
+from stages.geometry.curves.curves import Bezier, bezier, elevated
+from stages.geometry.ruled.ruled import RuledPatch, between, part
 
 Number = TypeVar("Number")
 Polynomial = Sequence[Fraction]

@@ -5,8 +5,8 @@ from fractions import Fraction
 
 from hypothesis import strategies as st
 
-from stages.geometry.curves import Curve, affine
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Curve, affine
+from stages.geometry.ruled.ruled import RuledPatch, between
 from tests.parts import Table, aumann
 
 Rows = tuple[tuple[Fraction, ...], ...]

@@ -15,7 +15,7 @@ MODULES = {
     "webbrowser", "yaml", "sympy", "numexpr", "asteval", "xml.sax", "xml.dom",
 }  # fmt: skip
 ATTRIBUTES = {"system", "popen", "socket", "create_connection", "allow_pickle", "eval", "lambdify", "sympify"}
-SUBPROCESS = {"pipeline/cadfiles.py", "stages/nest/child.py"}
+SUBPROCESS = {"pipeline/cad/files.py", "stages/nest/child.py"}
 """Where processes are started by a list of arguments, all of them the program's own."""
 
 

@@ -12,8 +12,9 @@ from pipeline.job import Job, job_of
 from pipeline.jobfile import read
 from pipeline.run import PartRun, Runner, run_set
 from pipeline.sewing import sewn_runs
-from stages.geometry import arcpath, contours
 from stages.geometry.arrays import Points2
+from stages.geometry.curves import contours
+from stages.geometry.paths import arcpath
 from tests.near import assert_near, assert_relative
 from tests.samples import SAMPLES
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from stages.geometry.arrays import Array, Indices, Points2, Points3, Triples
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 
 Shape = Callable[[Points2], Points3]
 

@@ -7,9 +7,9 @@ from math import radians, tan
 import numpy as np
 
 from stages.geometry.arrays import Array, norm
-from stages.geometry.curves import Bezier, Circular, bezier, elevated
-from stages.geometry.flatmap import Development
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Bezier, Circular, bezier, elevated
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.ruled.ruled import RuledPatch, between
 from tests.parts import EXAMPLE_2_PRINTED, patches
 
 Strip = tuple[RuledPatch, ...]

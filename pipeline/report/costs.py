@@ -20,7 +20,7 @@ from pipeline.rates import Rates
 from pipeline.report.cuts import SECONDS_PER_MINUTE, Cuts, cuts_of_copies, cuts_of_sheets, whole
 from pipeline.report.figures import figures
 from pipeline.report.stockfigures import MM_PER_M, cost
-from pipeline.report.traveller_numbers import counted
+from pipeline.report.traveller.numbers import counted
 
 if TYPE_CHECKING:
     from pipeline.run import JobResult
@@ -152,7 +152,7 @@ def _parts(
 
 def _net_area(pattern: "FlatPattern") -> float:
     """Return the area of a part without its holes, mm2: outer contours are positive, inner ones negative."""
-    from stages.geometry.arcpath import area
+    from stages.geometry.paths.arcpath import area
 
     return fsum(area(contour.path) for contour in (pattern.outer, *pattern.inner))
 

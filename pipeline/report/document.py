@@ -111,7 +111,7 @@ def plain(value: object) -> object:
 
 def measured(result: JobResult) -> dict[str, Figures]:
     """Return the figures of the parts that passed: of what is left when holes and notches have been cut."""
-    from stages.geometry.contours import area
+    from stages.geometry.curves.contours import area
 
     patterns = {run.part.name: run.pattern for run in result.parts if run.pattern is not None}
     return {

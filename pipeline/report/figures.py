@@ -22,7 +22,7 @@ class Figures:
 
 def figures(pattern: "FlatPattern", area_mm2: float) -> Figures:
     """Return the figures of one copy: mass from the exact area, the rest from the lines and arcs that are cut."""
-    from stages.geometry.arcpath import length
+    from stages.geometry.paths.arcpath import length
 
     paths = [contour.path for contour in (pattern.outer, *pattern.inner)]
     paths += [mark.path for mark in pattern.marks if mark.layer == "CUT_SLIT"]

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from stages.geometry.arrays import Points3
-from stages.geometry.ruled import at
+from stages.geometry.ruled.ruled import at
 from stages.model.surface import BranchedSurface, MeshSurface, RuledSurface, Surface
 
 Document = dict[str, object]
@@ -35,7 +35,7 @@ def _edges(surface: Surface) -> Iterator[Points3]:
         for face in surface.faces:
             yield from _edges(face)
     elif isinstance(surface, RuledSurface) and surface.trim is not None:
-        from pipeline.report.pictures_branched import outline
+        from pipeline.report.pictures.branched import outline
 
         yield outline(surface)
     elif isinstance(surface, RuledSurface):

@@ -5,7 +5,7 @@ Where something fails, the lines below say where, how much, what is allowed, and
 
 from collections.abc import Collection, Iterator
 
-from pipeline.report.traveller_numbers import counted
+from pipeline.report.traveller.numbers import counted
 from pipeline.run import JobResult, Step
 from stages.model.report import Metric, StageReport, Where
 

@@ -13,7 +13,7 @@ from msgspec import Struct
 from stages.model.sheet import NestOptions, Quality, Sheet, StockKind, Zone
 
 if TYPE_CHECKING:
-    from stages.geometry.arcpath import ArcPath
+    from stages.geometry.paths.arcpath import ArcPath
     from stages.model.pattern import FlatPattern
 
 Document = dict[str, object]
@@ -117,6 +117,6 @@ def _path_entry(path: "ArcPath") -> Document:
 def _path_of(entry: PathEntry) -> "ArcPath":
     import numpy as np
 
-    from stages.geometry.arcpath import ArcPath
+    from stages.geometry.paths.arcpath import ArcPath
 
     return ArcPath(np.array(entry.vertices).reshape(-1, 2), np.array(entry.bulges), closed=True)

@@ -14,7 +14,7 @@ from pipeline.provenance import code_digest, environment
 from pipeline.report.costs import cost_lines
 from pipeline.report.document import Document, encoded, figures_entry, measured, nest_entry, write_entry
 from pipeline.report.nestentries import wish_entry
-from pipeline.report.traveller_numbers import counted
+from pipeline.report.traveller.numbers import counted
 from pipeline.run import JobResult
 from pipeline.sidefiles import side_files
 from pipeline.store import POOL_SCHEMA

@@ -54,7 +54,7 @@ def _html(made: Made) -> dict[str, bytes]:
 def _traveller(made: Made) -> dict[str, bytes]:
     if "view.json" not in made.files:
         return {}
-    from pipeline.report.traveller import traveller_pdf
+    from pipeline.report.traveller.book import traveller_pdf
 
     return {"traveller.pdf": traveller_pdf(made)}
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from pipeline.report.traveller_numbers import counted
+from pipeline.report.traveller.numbers import counted
 
 if TYPE_CHECKING:
     from pipeline.run import JobResult

@@ -19,7 +19,7 @@ from pipeline.report.results import guarded, number
 from pipeline.report.summarycharts import bars, charts, heading
 from pipeline.report.summaryrows import MADE, JobRow
 from pipeline.report.summarytally import LISTED, tally
-from pipeline.report.traveller_numbers import counted
+from pipeline.report.traveller.numbers import counted
 
 COLUMNS = (
     "job", "status", "cause", "class", "parts", "parts_failed", "utilisation", "seconds", "part", "stage", "metric",

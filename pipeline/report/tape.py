@@ -14,8 +14,8 @@ from string import ascii_uppercase
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, distances, joint_turns, lengths, piece_count, split
 from stages.geometry.arrays import Points2
+from stages.geometry.paths.arcpath import ArcPath, distances, joint_turns, lengths, piece_count, split
 from stages.model.pattern import FlatPattern
 from stages.model.report import Evidence
 

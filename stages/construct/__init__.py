@@ -10,14 +10,14 @@ developable is not decided here: `verify` does that for every kind alike.
 import numpy as np
 
 from stages.construct.assemble import patches_of
-from stages.construct.faces import face_surface
+from stages.construct.faces.surface import face_surface
 from stages.construct.features import placed
 from stages.construct.joins import join_metrics, join_rows, joins_of
-from stages.construct.meshes import mesh_surface
+from stages.construct.meshes.surface import mesh_surface
 from stages.construct.openings import main_opening
 from stages.construct.plates import plate
-from stages.geometry.planarity import is_planar
-from stages.geometry.ruled import RuledPatch, size_of
+from stages.geometry.ruled.planarity import is_planar
+from stages.geometry.ruled.ruled import RuledPatch, size_of
 from stages.model.caps import MOST_CHORDS
 from stages.model.ducts import MainOpening
 from stages.model.faces import FaceFile

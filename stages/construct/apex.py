@@ -8,8 +8,8 @@ import numpy as np
 from stages.construct.curves import ends
 from stages.construct.quintic import Vector
 from stages.geometry.arrays import Values, Vector3, dot, floats, norm
-from stages.geometry.curves import Curve
-from stages.geometry.extremum import maximum
+from stages.geometry.curves.curves import Curve
+from stages.geometry.numeric.extremum import maximum
 from stages.model.report import Finding
 
 

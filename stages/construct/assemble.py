@@ -10,7 +10,7 @@ from stages.construct.bezierpair import bezier_pair
 from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, largest_gap, ruled_patches
 from stages.construct.cutcone import cut_cone, cut_frustum
-from stages.construct.meshnormals import NO_MESHES, Meshes
+from stages.construct.meshes.normals import NO_MESHES, Meshes
 from stages.construct.paper import paper_kind
 from stages.construct.pieces import strip_of
 from stages.construct.plain import cone_patches, cylinder_patches, directrix_of, frustum
@@ -22,7 +22,7 @@ from stages.construct.slope import slope
 from stages.construct.straps import strap
 from stages.construct.tangent import tangent_surface
 from stages.construct.transition import transition
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.developables import BezierPair, Slope, Tangent
 from stages.model.ducts import Tee, Transition
 from stages.model.envelopes import Ribbon, Strap

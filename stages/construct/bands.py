@@ -8,9 +8,9 @@ from math import isinf
 import numpy as np
 
 from stages.geometry.arrays import Values, diagonal
-from stages.geometry.curves import Curve
-from stages.geometry.envelope import Widest, speed
-from stages.geometry.extremum import maximum
+from stages.geometry.curves.curves import Curve
+from stages.geometry.numeric.extremum import maximum
+from stages.geometry.ruled.envelope import Widest, speed
 from stages.model.report import Finding, Metric, Where
 
 PLACES = 33

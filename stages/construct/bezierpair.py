@@ -14,8 +14,8 @@ from fractions import Fraction
 from itertools import pairwise
 
 from stages.construct.quintic import combine, vector
-from stages.geometry.curves import ExactPoints, bezier, elevated
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import ExactPoints, bezier, elevated
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.developables import BezierPair
 from stages.model.report import Finding
 

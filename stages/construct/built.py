@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.report import Finding, Metric
 
 

@@ -15,8 +15,8 @@ from math import pi, radians
 import numpy as np
 
 from stages.geometry.arrays import Vector3, floats, norm, unit
-from stages.geometry.curves import Circular, Curve, bezier, exactly, rational, restrict
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Circular, Curve, bezier, exactly, rational, restrict
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.curves import ArcSpec, BSplineSpec, CircleSpec, CurveSpec, EllipseSpec, HelixSpec
 
 Row = Sequence[Fraction]

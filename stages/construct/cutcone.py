@@ -24,7 +24,7 @@ import numpy as np
 from stages.construct.apex import apex_findings
 from stages.construct.quintic import ZERO, Vector, combine, inner, scaling, vector
 from stages.geometry.arrays import EPS, Values, dot, floats, norm
-from stages.geometry.curves import (
+from stages.geometry.curves.curves import (
     Bezier,
     Curve,
     HomogeneousPoints,
@@ -34,9 +34,9 @@ from stages.geometry.curves import (
     raised,
     rational,
 )
-from stages.geometry.extremum import minimum
-from stages.geometry.ruled import RuledPatch, between
-from stages.geometry.stepped import Share, Stepped, constant
+from stages.geometry.curves.stepped import Share, Stepped, constant
+from stages.geometry.numeric.extremum import minimum
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.part import Cone, Plane
 from stages.model.report import Finding
 

@@ -1,7 +1,7 @@
 """Shape parameters of the directrix (2.2) by least strain energy, the integral of |r''|^2 over [0, 1] [1]_.
 
 r'' is linear in beta, and so the best beta for given alpha are two linear equations; what is left is a polynomial of
-degree 4 in each of alpha0 and alpha1, whose least value is certified (`stages.geometry.leastvalue`).  All integrals
+degree 4 in each of alpha0 and alpha1, whose least value is certified (`geometry.numeric.leastvalue`).  All integrals
 are those of polynomials, without quadrature.  The unit of length is the chord.
 
 No curve of energy e has |r'(0)| or |r'(1)| above 1 + sqrt(e), since |r'(v) - r'(0)| <= sqrt(e) and the mean of r'
@@ -20,7 +20,7 @@ import numpy as np
 
 from stages.construct.quintic import End
 from stages.geometry.arrays import Array, Matrix, floats, norm
-from stages.geometry.leastvalue import least
+from stages.geometry.numeric.leastvalue import least
 
 LEAST_ALPHA = 0.05
 """alpha is kept above this share of the chord over |T|: below, the curve leaves its tangent within a few hundredths."""

@@ -1,7 +1,7 @@
 """Where the holes, marks and notches of a part lie on its surface: places and curves in space become (u, v).
 
 A place or curve given in u and v is taken as it is, one in space is pulled back to the nearest place of the surface
-(`stages.geometry.pullback`), as it is given: whatever face of the sheet that is.  Refused are places beyond the
+(`geometry.ruled.pullback`), as it is given: whatever face of the sheet that is.  Refused are places beyond the
 surface, places with two nearest ones (a seam, the axis of a cylinder), and curves that jump or leave the surface.
 
 That a curve stays on the surface, and how far it is from it, is measured at `SAMPLES` of its points.
@@ -15,14 +15,14 @@ import numpy as np
 
 from stages.construct.curves import chain
 from stages.construct.plain import plane_edges
-from stages.geometry.arclength import Speed, reached
 from stages.geometry.arrays import Array, Points2, Points3, Values, Vector2, Vector3, floats, norm
-from stages.geometry.curves import Curve
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.pullback import PulledBack, nearest, pulled_back, rivals
-from stages.geometry.ruled import RuledPatch
-from stages.geometry.strip import Strip, jet, points, size
-from stages.geometry.tabled import tabled
+from stages.geometry.curves.arclength import Speed, reached
+from stages.geometry.curves.curves import Curve
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.flat.tabled import tabled
+from stages.geometry.ruled.pullback import PulledBack, nearest, pulled_back, rivals
+from stages.geometry.ruled.ruled import RuledPatch
+from stages.geometry.ruled.strip import Strip, jet, points, size
 from stages.model.curves import CurveSpec, PlanePoint, in_numbers, is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks, name_of
 from stages.model.part import Flat, PartSpec

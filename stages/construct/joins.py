@@ -9,8 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from stages.geometry.joins import Join, join
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.joins import Join, join
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.report import Metric
 from stages.model.tolerances import Tolerances
 

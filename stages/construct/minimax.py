@@ -18,8 +18,8 @@ import numpy as np
 from stages.construct.quintic import End
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, Matrix, Values, floats, norm
-from stages.geometry.basis import bernstein_basis, bernstein_sum, differences
-from stages.geometry.curves import Bezier
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.numeric.basis import bernstein_basis, bernstein_sum, differences
 
 DEGREE = 4
 """Degree of r'."""

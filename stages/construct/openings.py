@@ -14,8 +14,8 @@ import numpy as np
 
 from stages.construct.saddles import tee
 from stages.geometry.arrays import Vector2, norm
-from stages.geometry.opening import Opening, opening
-from stages.geometry.plane import Segment
+from stages.geometry.curves.opening import Opening, opening
+from stages.geometry.curves.plane import Segment
 from stages.model.curves import CurveSpec, PlanePoint
 from stages.model.ducts import Tee
 from stages.model.features import CurveMark, PointMark

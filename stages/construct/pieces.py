@@ -13,8 +13,8 @@ import numpy as np
 
 from stages.construct.built import Built
 from stages.geometry.arrays import EPS, Matrix, norm
-from stages.geometry.backwards import exchanged, reversed_patch
-from stages.geometry.ruled import RuledPatch, at
+from stages.geometry.ruled.backwards import exchanged, reversed_patch
+from stages.geometry.ruled.ruled import RuledPatch, at
 from stages.model.report import Evidence, Finding, Metric, Where
 from stages.model.tolerances import Tolerances
 

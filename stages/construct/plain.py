@@ -13,11 +13,11 @@ import numpy as np
 
 from stages.construct.curves import Chain, chain, plane_axes
 from stages.construct.quintic import ZERO, Vector, combine, inner, scaling, vector
-from stages.geometry import contours
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector3, cross2, dot, floats, norm, unit
-from stages.geometry.curves import Along, Bezier, Circular, Curve, affine, exactly
-from stages.geometry.plane import CircularArc, PlaneCurve, Segment
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves import contours
+from stages.geometry.curves.curves import Along, Bezier, Circular, Curve, affine, exactly
+from stages.geometry.curves.plane import CircularArc, PlaneCurve, Segment
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.part import Cone, Cylinder, Plane
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from stages.construct.curves import Chain, chain, largest_gap
 from stages.construct.features import NoPlaceError, placement
 from stages.construct.plain import PlaneFrame, closed_chain, in_plane, plane_edges, plane_of
-from stages.geometry import contours
 from stages.geometry.arrays import Points3, Values, dot, floats, norm
+from stages.geometry.curves import contours
 from stages.model.curves import is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks
 from stages.model.material import Part

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
-from stages.geometry.curves import Bezier, ExactPoint, affine, bezier
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Bezier, ExactPoint, affine, bezier
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.quintics import QuinticCone, QuinticCylinder, QuinticPlanar, QuinticRuled
 from stages.model.quinticstrip import NextPatch
 

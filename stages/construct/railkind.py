@@ -14,13 +14,13 @@ from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, ends
 from stages.construct.rails import Piece, pieces, rows
 from stages.geometry.arrays import Values, norm, unit
-from stages.geometry.extremum import maximum
-from stages.geometry.joins import join
-from stages.geometry.railbound import Bound
-from stages.geometry.railgraph import SMOOTH, Rules
-from stages.geometry.railstrip import Rail, Strip, bounds, closed_bounds, closed_strip, open_strip
-from stages.geometry.railzero import angles
-from stages.geometry.ruled import RuledPatch, curvature
+from stages.geometry.numeric.extremum import maximum
+from stages.geometry.rails.bound import Bound
+from stages.geometry.rails.graph import SMOOTH, Rules
+from stages.geometry.rails.strip import Rail, Strip, bounds, closed_bounds, closed_strip, open_strip
+from stages.geometry.rails.zeros import angles
+from stages.geometry.ruled.joins import join
+from stages.geometry.ruled.ruled import RuledPatch, curvature
 from stages.model.rails import Rails
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances

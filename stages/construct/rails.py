@@ -1,7 +1,7 @@
 """The kind `rails`: strips between two rails as ruled pieces along F = 0, cones with an apex on a rail, triangles.
 
 The rails are kept exactly: a cone's directrix is the rail's own piece, its apex the rail's own point, in fractions
-where the rail is polynomial; a ruled piece runs along both rails by one parameter (`stages.geometry.linked`).
+where the rail is polynomial; a ruled piece runs along both rails by one parameter (`geometry.rails.linked`).
 """
 
 from collections.abc import Iterator
@@ -11,14 +11,14 @@ from fractions import Fraction
 import numpy as np
 
 from stages.geometry.arrays import Array, Values
-from stages.geometry.curves import Bezier, Curve, Difference, affine, blossom, exactly, restrict
-from stages.geometry.linked import both_rails
-from stages.geometry.planarity import is_planar
-from stages.geometry.railchords import SHARED
-from stages.geometry.railcorners import TINY, Leg
-from stages.geometry.railpath import linked
-from stages.geometry.railstrip import Rail, Strip, as_given, snapped
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.curves import Bezier, Curve, Difference, affine, blossom, exactly, restrict
+from stages.geometry.rails.chords import SHARED
+from stages.geometry.rails.corners import TINY, Leg
+from stages.geometry.rails.linked import both_rails
+from stages.geometry.rails.strip import Rail, Strip, as_given, snapped
+from stages.geometry.rails.way import linked
+from stages.geometry.ruled.planarity import is_planar
+from stages.geometry.ruled.ruled import RuledPatch
 
 Identity = tuple[tuple[Fraction, ...], ...]
 ONE: Identity = tuple(tuple(Fraction(int(i == j)) for j in range(3)) for i in range(3))

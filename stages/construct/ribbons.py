@@ -1,8 +1,8 @@
 """Ribbons: the band that touches, along a curve, a surface with given normals there.
 
-The normals are taken from a mesh (`meshnormals`), or interpolated by the C2 cubic spline over the parameters of the
+The normals are taken from a mesh (`meshes.normals`), or interpolated by the C2 cubic spline over the parameters of the
 curve's points, then made perpendicular to the curve; the band is the envelope of the planes across them
-(`stages.geometry.envelope`), a developable whatever the normals were.  How far they lean over before that is measured.
+(`geometry.ruled.envelope`), a developable whatever the normals were.  How far they lean over before that is measured.
 
 Not where the normal does not turn (the band is flat there, or the surface is), nor where it turns about the curve
 itself: the ruling then runs along the curve.
@@ -19,11 +19,11 @@ import numpy as np
 from stages.construct.bands import LEANING_DEG, least, limit_metric, size_along, stops, too_wide
 from stages.construct.built import Built
 from stages.construct.curves import Chain, common_pieces, spline
-from stages.construct.meshnormals import NO_MESHES, Meshes, mesh_normals
+from stages.construct.meshes.normals import NO_MESHES, Meshes, mesh_normals
 from stages.construct.plain import closed_chain
 from stages.geometry.arrays import dot, floats, unit
-from stages.geometry.curves import Curve
-from stages.geometry.envelope import Conjugate, crossing_sine, normal_share, room, swept, turn
+from stages.geometry.curves.curves import Curve
+from stages.geometry.ruled.envelope import Conjugate, crossing_sine, normal_share, room, swept, turn
 from stages.model.envelopes import Ribbon
 from stages.model.meshes import MeshNormals
 from stages.model.report import Finding, Metric, Where

@@ -23,10 +23,10 @@ import numpy as np
 from stages.construct.plain import directrix_of, meeting
 from stages.construct.quintic import combine, vector
 from stages.geometry.arrays import ArrayValue, Vector3, dot, floats, norm, unit
-from stages.geometry.curves import Along, Circular, Curve, Difference, affine, exactly, restrict
-from stages.geometry.extremum import minimum
-from stages.geometry.halfchord import TOUCHING, HalfChord, excess
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.curves import Along, Circular, Curve, Difference, affine, exactly, restrict
+from stages.geometry.curves.halfchord import TOUCHING, HalfChord, excess
+from stages.geometry.numeric.extremum import minimum
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.ducts import Saddle, Tee
 from stages.model.part import Cylinder
 from stages.model.report import Finding

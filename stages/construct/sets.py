@@ -17,8 +17,8 @@ from math import cos, radians, sin
 
 from msgspec.structs import replace as with_fields
 
-from stages.construct.faces import face_blanks
-from stages.construct.meshes import blanks
+from stages.construct.faces.surface import face_blanks
+from stages.construct.meshes.surface import blanks
 from stages.model.curves import CurveSpec, EllipseSpec, Table
 from stages.model.ducts import Elbow, MainOpening, Tee, is_set
 from stages.model.faces import FaceFile

@@ -23,10 +23,10 @@ from stages.construct.curves import Chain
 from stages.construct.plain import ALMOST_UPRIGHT, closed_chain
 from stages.construct.tangent import place, stop_findings
 from stages.geometry.arrays import ArrayValue, Values, Vector3, dot, floats, norm, unit
-from stages.geometry.curves import Circular, Curve, affine, bezier, exactly
-from stages.geometry.extremum import maximum
-from stages.geometry.ruled import RuledPatch
-from stages.geometry.tangents import end_tangents, total, unit_tangent
+from stages.geometry.curves.curves import Circular, Curve, affine, bezier, exactly
+from stages.geometry.curves.tangents import end_tangents, total, unit_tangent
+from stages.geometry.numeric.extremum import maximum
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.developables import Slope
 from stages.model.report import Finding, Metric, Where
 from stages.model.scalars import RIGHT_ANGLE

@@ -11,8 +11,8 @@ import numpy as np
 from stages.construct.curves import Chain, chain
 from stages.construct.plain import plane_edges
 from stages.geometry.arrays import norm
-from stages.geometry.biarc import ZERO_LENGTH_MM
-from stages.geometry.plane import PlaneCurve, Segment
+from stages.geometry.curves.plane import PlaneCurve, Segment
+from stages.geometry.paths.biarc import ZERO_LENGTH_MM
 from stages.model.curves import CurveSpec
 
 

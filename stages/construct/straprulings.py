@@ -15,10 +15,10 @@ import numpy as np
 
 from stages.construct.bands import PLACES, least, place, positions
 from stages.geometry.arrays import EPS, Vector3, cross3, diagonal, dot, norm, unit
-from stages.geometry.curves import Bezier, Curve, RationalBezier, affine, bezier, exactly
-from stages.geometry.envelope import Rectifying, bend
-from stages.geometry.inflection import bending, through
-from stages.geometry.tangents import turn_between
+from stages.geometry.curves.curves import Bezier, Curve, RationalBezier, affine, bezier, exactly
+from stages.geometry.curves.tangents import turn_between
+from stages.geometry.ruled.envelope import Rectifying, bend
+from stages.geometry.ruled.inflection import bending, through
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
 

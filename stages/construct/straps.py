@@ -30,9 +30,9 @@ from stages.construct.straprulings import (
 )
 from stages.construct.strapstretch import inflection_findings
 from stages.geometry.arrays import Vector3, dot, norm, unit
-from stages.geometry.curves import Along, Curve, affine, exactly
-from stages.geometry.envelope import room, swept
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.curves import Along, Curve, affine, exactly
+from stages.geometry.ruled.envelope import room, swept
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.envelopes import Strap
 from stages.model.report import Finding, Metric
 from stages.model.tolerances import Tolerances

@@ -14,10 +14,10 @@ import numpy as np
 
 from stages.construct.bands import place
 from stages.construct.straprulings import RunsOff, value
-from stages.geometry.arclength import length_between
 from stages.geometry.arrays import Mask, Values, norm
-from stages.geometry.curves import Curve
-from stages.geometry.envelope import Rectifying, closing, speed
+from stages.geometry.curves.arclength import length_between
+from stages.geometry.curves.curves import Curve
+from stages.geometry.ruled.envelope import Rectifying, closing, speed
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
 

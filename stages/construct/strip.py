@@ -24,7 +24,7 @@ from stages.construct.quintic import (
 )
 from stages.construct.shape import Patch
 from stages.geometry.arrays import floats
-from stages.geometry.curves import Bezier
+from stages.geometry.curves.curves import Bezier
 from stages.model.quintics import (
     SHAPE_KEYS,
     QuinticCone,

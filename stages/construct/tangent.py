@@ -14,10 +14,10 @@ import numpy as np
 from stages.construct.curves import Chain
 from stages.construct.quintic import ZERO, scaling
 from stages.geometry.arrays import Array, Values, cross3, norm
-from stages.geometry.curves import Curve, affine
-from stages.geometry.extremum import maxima
-from stages.geometry.ruled import RuledPatch
-from stages.geometry.tangents import total, turn_between, unit_tangent
+from stages.geometry.curves.curves import Curve, affine
+from stages.geometry.curves.tangents import total, turn_between, unit_tangent
+from stages.geometry.numeric.extremum import maxima
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.developables import Tangent
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances

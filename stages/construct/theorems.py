@@ -12,11 +12,11 @@ from fractions import Fraction
 import numpy as np
 
 from stages.construct.quintic import End
-from stages.geometry import bernstein
 from stages.geometry.arrays import Array, dot, float_rows, floats, norm
-from stages.geometry.bernstein import Polynomial, cross, derivative, inner, subtract, vector_from_points
-from stages.geometry.curves import Bezier
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.numeric import bernstein
+from stages.geometry.numeric.bernstein import Polynomial, cross, derivative, inner, subtract, vector_from_points
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.report import Finding, Metric
 from stages.model.tolerances import Tolerances
 

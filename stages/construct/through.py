@@ -17,8 +17,8 @@ from stages.construct.built import Built
 from stages.construct.energy import Shape, least_energy
 from stages.construct.quintic import End, cone_over, directrix, moved, patch_between, unit_exact, vector
 from stages.construct.shape import bound_findings, shape_detail
-from stages.geometry.curves import Bezier
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.quinticstrip import QuinticStrip, Station
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances

@@ -20,8 +20,8 @@ from math import acos, atan2, cos, hypot, pi, radians, sin, tan
 import numpy as np
 
 from stages.geometry.arrays import ArrayValue, Vector3
-from stages.geometry.curves import Circular, bezier, exactly
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Circular, bezier, exactly
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.ducts import Transition
 from stages.model.report import Finding
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Array, ArrayValue, Vector3
-from stages.geometry.curves import Circular, Curve
+from stages.geometry.curves.curves import Circular, Curve
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 from stages.model.cadface import CadBody
 from stages.model.kfactor import KFactor
 from stages.model.meshes import MeshNormals

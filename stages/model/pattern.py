@@ -6,9 +6,9 @@ Flat frame, mm: c0(0) at the origin, the first ruling along +x, seen from the si
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import ArrayValue, Points2, Vector2
-from stages.geometry.plane import PlaneCurve
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import Side
 from stages.model.features import NotchKind
 from stages.model.sheet import Quality

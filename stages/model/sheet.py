@@ -7,9 +7,9 @@ lies where it was drawn.
 from dataclasses import dataclass
 from typing import Literal
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import ArrayValue
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath
 
 StockKind = Literal["sheet", "remnant", "roll", "hide"]
 

@@ -9,8 +9,8 @@ unrolls alike whatever its face.
 from dataclasses import dataclass
 from itertools import pairwise
 
-from stages.geometry.meshbends import MeshBends
-from stages.geometry.turning import FLAT, FOLD, Turning
+from stages.geometry.mesh.bending import MeshBends
+from stages.geometry.ruled.turning import FLAT, FOLD, Turning
 from stages.model.face import Face
 from stages.model.report import Finding
 

@@ -6,8 +6,8 @@ Once the outline is cut the part may tip or slide, and nothing on it lands in it
 from dataclasses import dataclass
 from typing import Literal
 
-from stages.geometry.arcpath import ArcPath, area
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, area
 from stages.model.pattern import FlatPattern, MarkLayer
 
 StrokeLayer = MarkLayer | Literal["CUT_INNER", "CUT_OUTER"]

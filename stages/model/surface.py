@@ -6,11 +6,11 @@ from fractions import Fraction
 import numpy as np
 
 from stages.geometry.arrays import ArrayValue, Numbers, Vector2
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshflat import MeshMap
-from stages.geometry.meshnearest import OnMesh
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.nearest import OnMesh
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.features import Feature
 from stages.model.material import Part
 from stages.model.tolerances import Class

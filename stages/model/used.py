@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from stages.geometry.arcpath import bounds, transform
+from stages.geometry.paths.arcpath import bounds, transform
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import SheetLayout
 

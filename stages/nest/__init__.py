@@ -18,7 +18,7 @@ from stages.nest.finish import finished
 from stages.nest.fit import Kind
 from stages.nest.gate import oriented, troubles
 from stages.nest.layout import as_nesting
-from stages.nest.legal import certify, passed
+from stages.nest.legal.certify import certify, passed
 from stages.nest.lots import EMPTY, task_of
 from stages.nest.raster import fill_raster
 from stages.nest.search import MANY, Engine, copies_of, search_plans

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 from shapely import Polygon, affinity, box, make_valid, prepare, unary_union
 
-from stages.geometry.arcpath import ArcPath, area, backwards, bounds, polygon
+from stages.geometry.paths.arcpath import ArcPath, area, backwards, bounds, polygon
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.blank import (

@@ -24,10 +24,10 @@ from shapely import (
     transform,
 )
 
-from stages.geometry import arcpath
-from stages.geometry.arcpath import bounds, polygon
 from stages.geometry.arrays import Points2
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.arcpath import bounds, polygon
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import NestOptions, Placement, Quality, Sheet
 

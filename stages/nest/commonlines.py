@@ -16,7 +16,7 @@ from math import fsum
 import numpy as np
 
 from stages.geometry.arrays import Vector2, norm
-from stages.geometry.facing import Facing, Strip, facing
+from stages.geometry.paths.facing import Facing, Strip, facing
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric
 from stages.model.sheet import Nesting, NestOptions, Placement, SheetLayout
@@ -30,10 +30,10 @@ from stages.nest.commonrules import (
     near_pairs,
     roughly_apart,
 )
-from stages.nest.legal_common import LEAST_COMMON_MM, common_stretches
-from stages.nest.legal_gaps import between_copies
-from stages.nest.legal_laid import Spread, ground, lay
-from stages.nest.legal_region import GAP_TOLERANCE_MM
+from stages.nest.legal.common import LEAST_COMMON_MM, common_stretches
+from stages.nest.legal.gaps import between_copies
+from stages.nest.legal.laid import Spread, ground, lay
+from stages.nest.legal.region import GAP_TOLERANCE_MM
 from stages.nest.order import holders
 
 FAR_GAPS, FAR_MM = 3.0, 10.0
@@ -97,7 +97,7 @@ def _aligned(layout: SheetLayout, patterns: Patterns, options: NestOptions, held
 def _closed_up(table: Table, direction: float, patterns: Patterns, options: NestOptions) -> Table:
     """Return the parts after all moves in one direction, as they were if the certifier's rules refuse the outcome.
 
-    First each move is judged by the gaps alone; where the outcome is refused, by the full rules (`legal_common`).
+    First each move is judged by the gaps alone; where the outcome is refused, by the full rules (`legal.common`).
     """
     judges = (roughly_apart,) if len(table.laid) > FEW_PARTS else (roughly_apart, apart_by_the_rules)
     for judge in judges:

@@ -1,6 +1,6 @@
 """Parts on a sheet while they are moved together for common lines, and by which rules a move is judged.
 
-The rules are the certifier's (`legal_ground`, `legal_common`).  The excuses of common lines are worked out for every
+The rules are the certifier's (`legal.ground`, `legal.common`).  The excuses of common lines are worked out for every
 move in the strict way; the quick way takes two parts for excused that have a common line, or both one with a third part
 (corners about a cross), and leaves it to the certifier to refuse the outcome as a whole.
 """
@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Vector2, norm
-from stages.geometry.clearance import clearances, joined
+from stages.geometry.paths.clearance import clearances, joined
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import NestOptions, Placement
-from stages.nest.legal_common import Gaps, common_stretches, without_common_lines
-from stages.nest.legal_ground import REACH_MM, edge_distances, edge_findings, zone_overlaps
-from stages.nest.legal_laid import Ground, Laid, Spread
-from stages.nest.legal_region import GAP_TOLERANCE_MM, overlap_mm2
+from stages.nest.legal.common import Gaps, common_stretches, without_common_lines
+from stages.nest.legal.ground import REACH_MM, edge_distances, edge_findings, zone_overlaps
+from stages.nest.legal.laid import Ground, Laid, Spread
+from stages.nest.legal.region import GAP_TOLERANCE_MM, overlap_mm2
 
 SLIDES = 1e-9
 """Sine of the angle between a move and a common line up to which the parts slide: 1e-8 mm of a move of 10 mm."""

@@ -19,9 +19,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from stages.geometry.arcpath import polygon
 from stages.geometry.arrays import Array, Points2, Values, locked
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.paths.arcpath import polygon
 from stages.model.sheet import NestOptions
 from stages.nest.blank import Bed, Blank, Turned, extent, fits, fits_turned, turned
 from stages.nest.turns import ANY, Turns, allowed, contains

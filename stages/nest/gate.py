@@ -15,16 +15,16 @@ from math import isfinite
 import numpy as np
 from shapely import Polygon
 
-from stages.geometry.arcpath import ArcPath, area, backwards, joint_turns, length, lengths, polygon
-from stages.geometry.clearance import joined, nearest
-from stages.geometry.cover import doubled
-from stages.geometry.overlap import overlaps
-from stages.geometry.simple import certainly_simple
+from stages.geometry.paths.arcpath import ArcPath, area, backwards, joint_turns, length, lengths, polygon
+from stages.geometry.paths.clearance import joined, nearest
+from stages.geometry.paths.cover import doubled
+from stages.geometry.paths.overlap import overlaps
+from stages.geometry.paths.simple import certainly_simple
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding
 from stages.model.sheet import NestOptions, Sheet
-from stages.nest.legal_laid import fatal
-from stages.nest.legal_region import Region, meeting, overlap_mm2, region, within
+from stages.nest.legal.laid import fatal
+from stages.nest.legal.region import Region, meeting, overlap_mm2, region, within
 from stages.nest.turns import allowed
 
 NO_AREA = 1e-9

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import count
 
-from stages.geometry.arcpath import bounds, transform
+from stages.geometry.paths.arcpath import bounds, transform
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, NestOptions, Placement, Rectangle, Sheet, SheetLayout
 from stages.nest.blank import Bed, Placed
-from stages.nest.legal import utilisation
+from stages.nest.legal.certify import utilisation
 from stages.nest.sheets import Plan
 
 Numbers = dict[tuple[str, bool], Iterator[int]]

@@ -3,7 +3,7 @@
 The head begins at the lower left corner of the sheet, goes to the first vertex of each path and leaves it at the last
 (of a closed one: where it began).  A part and all that lies in its holes are cut in one go, the innermost first, so the
 rule for holes holds however the rest is ordered; among such groups, and within each, the way is a short tour
-(`stages.geometry.tour`).  BEND and ROLL lines are in the file and nobody cuts them: they do not count.
+(`geometry.numeric.tour`).  BEND and ROLL lines are in the file and nobody cuts them: they do not count.
 
 Limits: where a controller begins a full circle is its own affair, here it is the first vertex; lead-ins are not known.
 """
@@ -15,10 +15,10 @@ from math import fsum
 import numpy as np
 from shapely import Point, Polygon, STRtree
 
-from stages.geometry.arcpath import ArcPath, area, bounds, polygon, transform
 from stages.geometry.arrays import Matrix, Points2, norm
-from stages.geometry.rigid import Rigid2, apply
-from stages.geometry.tour import short_tour
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.numeric.tour import short_tour
+from stages.geometry.paths.arcpath import ArcPath, area, bounds, polygon, transform
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric
 from stages.model.sheet import Nesting, Placement, SheetLayout

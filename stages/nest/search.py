@@ -14,7 +14,7 @@ import numpy as np
 from shapely import Polygon, affinity
 
 from stages.geometry.arrays import Vector2
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
 from stages.nest.blank import Bed, Blank, Placed, Region, turned
 from stages.nest.child import ENGINE, EngineError, Told, last_words, layouts, solve
 from stages.nest.fit import Kind

@@ -3,7 +3,7 @@
     unroll(certificate, tol) -> Outcome[FlatPattern | None]
 
 The neutral surface of the sheet (`thickness`) is laid flat along its rulings, by quadrature to rounding
-(`stages.geometry.development`); one that is developable only nearly, by least strain (`stages.geometry.relaxed`).
+(`geometry.flat.development`); one that is developable only nearly, by least strain (`geometry.flat.relaxed`).
 Lengths, angles, area and metric of pattern and surface are measured separately and compared (`distortion`): their
 difference is the distortion.  Holes and marks go through the same map (`features`), bend lines and the roll schedule
 follow the turning of the surface (`forming`, `rolls`).  A pattern that overlaps itself, or is strained beyond the class
@@ -13,9 +13,9 @@ that the job accepts, is refused.
 from dataclasses import dataclass, field, replace
 
 from stages.geometry.arrays import Points2
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development
-from stages.geometry.relaxed import relaxed
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.flat.relaxed import relaxed
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric, Outcome, StageReport
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface

@@ -6,7 +6,7 @@ regression: within l = d beta L / w of the apex (a few d) there is no neutral su
 sharply is neutral anywhere.  In the shop the tip is creased, or hammered.
 
 What is unrolled then is the cone from the given apex over the neutral line of its other edge: `tapered` in
-`stages.geometry.offset`.  Along that other edge all lengths are those of the neutral surface.  Towards the apex the
+`geometry.ruled.offset`.  Along that other edge all lengths are those of the neutral surface.  Towards the apex the
 offset falls evenly to nothing, and so flat lengths across the rulings exceed those of the neutral surface (where there
 is one) by a share of d times the turning of the normal, all of it at the apex: `apex_allowance_mm`.  Rulings of the
 length L become sqrt(L^2 + d^2).  The finding `apex-tapered` says all of this in numbers.
@@ -20,9 +20,9 @@ from itertools import groupby
 import numpy as np
 
 from stages.geometry.arrays import norm
-from stages.geometry.quadrature import nodes
-from stages.geometry.tightest import Edge
-from stages.geometry.turning import FLAT, Turning, is_fold
+from stages.geometry.numeric.quadrature import nodes
+from stages.geometry.ruled.tightest import Edge
+from stages.geometry.ruled.turning import FLAT, Turning, is_fold
 from stages.model.report import Finding, Metric, Where
 from stages.unroll.bent import Bent
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Array, Values, Vector2
-from stages.geometry.tightest import Tight
-from stages.geometry.turning import Turning, is_fold, rates
+from stages.geometry.ruled.tightest import Tight
+from stages.geometry.ruled.turning import Turning, is_fold, rates
 from stages.model.material import Material
 from stages.model.sheetface import Layers
 from stages.model.surface import RuledSurface

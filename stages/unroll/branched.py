@@ -15,10 +15,10 @@ from math import degrees
 
 import numpy as np
 
-from stages.geometry import contours
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.mapped import MappedEdge, backwards
-from stages.geometry.turning import FLAT
+from stages.geometry.curves import contours
+from stages.geometry.flat.mapped import MappedEdge, backwards
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.ruled.turning import FLAT
 from stages.model.features import RulingMarks
 from stages.model.gathered import Rule, gathered, told
 from stages.model.pattern import Contour, FlatPattern, Mark

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Points2, Values, norm
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development
-from stages.geometry.mapped import FlatStrip, MappedEdge, backwards
-from stages.geometry.placing import moved, onto
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.ruled import RuledPatch, curvature
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.flat.mapped import FlatStrip, MappedEdge, backwards
+from stages.geometry.flat.placing import moved, onto
+from stages.geometry.ruled.ruled import RuledPatch, curvature
 from stages.model.surface import BranchedSurface, Hinge, RuledSurface, Trim
 from stages.model.tolerances import Tolerances
 from stages.unroll.bent import SLIGHT

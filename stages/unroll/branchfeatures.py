@@ -12,9 +12,9 @@ from itertools import pairwise
 import numpy as np
 
 from stages.geometry.arrays import Points2, norm
-from stages.geometry.mapped import FlatStrip, images
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.strip import Strip
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.flat.mapped import FlatStrip, images
+from stages.geometry.ruled.strip import Strip
 from stages.model.features import CurveHole, DrilledHole
 from stages.model.pattern import Contour, Mark
 from stages.model.report import Finding

@@ -17,8 +17,8 @@ from itertools import pairwise
 import numpy as np
 
 from stages.geometry.arrays import Array, cross2, dot, norm, similarities
-from stages.geometry.flatmap import Development
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.report import Metric, Where
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import STRAIN_LIMIT, Tolerances

@@ -22,13 +22,13 @@ from math import ceil, log2, pi
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry import ruled
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, cross2, dot, norm
-from stages.geometry.cover import doubled
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development, FlatPiece
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development, FlatPiece
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.cover import doubled
+from stages.geometry.ruled import ruled
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.report import Finding
 from stages.model.surface import Certificate, RuledSurface, Span
 from stages.model.tolerances import Tolerances

@@ -3,8 +3,8 @@
     on_strip(surface, development, outer) -> Features        on_plate(plate, outer, holes) -> Features
 
 What construct placed in u and v goes through the flat map: a place becomes a point, a curve an exact edge that is
-evaluated through the map (`stages.geometry.mapped`); a circle of the flat pattern is an exact circle, a drilled hole
-the image of the curve in which the cylinder meets the surface (`stages.geometry.drill`).  Of a part that was divided,
+evaluated through the map (`geometry.flat.mapped`); a circle of the flat pattern is an exact circle, a drilled hole
+the image of the curve in which the cylinder meets the surface (`geometry.ruled.drill`).  Of a part that was divided,
 a blank takes what lies on it (`onblank`); what a cut would go through is refused.
 
 Marks do not reach beyond the outline nor across holes (`onpart`); a text that does is told (`texts`).
@@ -15,15 +15,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stages.geometry import contours
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Vector2, unit
-from stages.geometry.drill import drilled
-from stages.geometry.flatmap import Development
-from stages.geometry.mapped import FlatStrip, images
-from stages.geometry.plane import CircularArc, PlaneCurve, stretch
-from stages.geometry.strip import Strip
-from stages.geometry.tabled import tabled
+from stages.geometry.curves import contours
+from stages.geometry.curves.plane import CircularArc, PlaneCurve, stretch
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.flat.mapped import FlatStrip, images
+from stages.geometry.flat.tabled import tabled
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.ruled.drill import drilled
+from stages.geometry.ruled.strip import Strip
 from stages.model.features import (
     CircleHole,
     CurveHole,

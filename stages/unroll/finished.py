@@ -4,8 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from stages.geometry.arcpath import bounds
 from stages.geometry.arrays import Points2
+from stages.geometry.paths.arcpath import bounds
 from stages.model.material import Part
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.scalars import Angle

@@ -22,10 +22,10 @@ from typing import Literal
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Values, cross2, norm
-from stages.geometry.flatmap import Development
-from stages.geometry.turning import Run, chord_turning, equal_turns, is_fold, places, run_angle, runs
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.ruled.turning import Run, chord_turning, equal_turns, is_fold, places, run_angle, runs
 from stages.model.forming import BendSpec
 from stages.model.pattern import Mark
 from stages.model.report import Finding, Metric

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from stages.geometry import arcpath
-from stages.geometry.cover import doubled
-from stages.geometry.overlap import overlaps
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.cover import doubled
+from stages.geometry.paths.overlap import overlaps
 from stages.model.pattern import Contour
 from stages.model.report import Finding, Metric
 from stages.model.tolerances import CLASSES, STRAIN_LIMIT, Class, Tolerances, class_by_strain

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.geometry import biarc
-from stages.geometry.allowance import is_point
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import norm
-from stages.geometry.flatmap import DevelopedRuling, Development
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.turning import equal_turns, turning, turning_places
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.flat.flatmap import DevelopedRuling, Development
+from stages.geometry.paths import biarc
+from stages.geometry.paths.allowance import is_point
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.ruled.turning import equal_turns, turning, turning_places
 from stages.model.features import RulingMarks
 from stages.model.pattern import Mark
 

@@ -5,7 +5,7 @@
 The map is the one that `verify` judged, or that of the neutral surface of a thick sheet (`meshneutral`).  What is said
 of it is measured on positions: lengths of the boundary against cubic splines through the same vertices in space, areas
 and angles against those of the triangles on the fitted surface, strains triangle by triangle.  The boundary's own
-curves are put back (`stages.geometry.refit`), so that arcs are cut and not facets; how far they leave the polygon, and
+curves are put back (`geometry.curves.refit`), so that arcs are cut and not facets; how far they leave the polygon, and
 what they are worth between its points, is told.  Sides of a cut run straight from end to end: they are congruent, so
 that their zigzag cancels.
 
@@ -17,14 +17,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.geometry import contours
 from stages.geometry.arrays import Points2
-from stages.geometry.lying import lying
-from stages.geometry.meshflat import MeshMap
-from stages.geometry.meshnearest import at
-from stages.geometry.plane import CircularArc, PlaneCurve
-from stages.geometry.planespline import spline
-from stages.geometry.refit import refitted
+from stages.geometry.curves import contours
+from stages.geometry.curves.plane import CircularArc, PlaneCurve
+from stages.geometry.curves.planespline import spline
+from stages.geometry.curves.refit import refitted
+from stages.geometry.flat.lying import lying
+from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.nearest import at
 from stages.model.features import CircleHole
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Metric, Outcome, StageReport

@@ -3,7 +3,7 @@
     mesh_neutral(surface, flat) -> NeutralMesh
 
 By the rule of ruled parts (`stages.unroll.thickness`): it lies K t from the inside face, one K for the whole part, that
-of its smallest inside radius.  The mesh is moved there along its fitted normals (`stages.geometry.meshbends`), fitted
+of its smallest inside radius.  The mesh is moved there along its fitted normals (`geometry.mesh.bending`), fitted
 again and laid flat anew; where it need not be moved, the map that `verify` judged is kept.
 
 A mesh that bends both ways has its neutral surface on both sides of the middle unless K is 1/2.  It is not divided at
@@ -14,11 +14,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshbends import MeshBends, SharpVertex, bends_of, parallel
-from stages.geometry.meshfit import fitted, stars
-from stages.geometry.meshflat import AT_REST, MeshMap, at_rest, edge_lengths
-from stages.geometry.meshtopology import edges_of
+from stages.geometry.mesh.bending import MeshBends, SharpVertex, bends_of, parallel
+from stages.geometry.mesh.fit import fitted, stars
+from stages.geometry.mesh.flat import AT_REST, MeshMap, at_rest, edge_lengths
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import edges_of
 from stages.model.kfactor import MIDDLE, k_at
 from stages.model.report import Evidence, Finding, Metric
 from stages.model.sheetface import LITTLE, Layers, mesh_layers

@@ -7,11 +7,11 @@ part, to the square of the zigzag's width over the distance in which the strain 
 
 import numpy as np
 
-from stages.geometry import contours
-from stages.geometry.arapkept import KEPT
 from stages.geometry.arrays import Array, Numbers, Points2, Values, norm
-from stages.geometry.meshflat import MeshMap
-from stages.geometry.meshtopology import edge_numbers, edges_of
+from stages.geometry.curves import contours
+from stages.geometry.mesh.arapkept import KEPT
+from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.topology import edge_numbers, edges_of
 from stages.model.report import Metric
 from stages.model.surface import MeshSurface
 from stages.unroll.meshdistortion import Loops, runs

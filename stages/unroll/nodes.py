@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from stages.geometry import differentiation
 from stages.geometry.arrays import EPS, Array, Values, norm
-from stages.geometry.flatmap import FlatPiece
+from stages.geometry.flat.flatmap import FlatPiece
+from stages.geometry.numeric import differentiation
 
 GAUSS, GAUSS_WEIGHTS = legendre.leggauss(20)
 ALONG, ALONG_WEIGHTS = np.concatenate([[-1.0], GAUSS, [1.0]]), np.concatenate([[0.0], GAUSS_WEIGHTS, [0.0]])

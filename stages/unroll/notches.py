@@ -14,11 +14,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from stages.geometry.arclength import length_between, reached, speed_of
 from stages.geometry.arrays import Vector2, norm
-from stages.geometry.cover import doubled
-from stages.geometry.plane import PlaneCurve, stretch
-from stages.geometry.strip import locate
+from stages.geometry.curves.arclength import length_between, reached, speed_of
+from stages.geometry.curves.plane import PlaneCurve, stretch
+from stages.geometry.paths.cover import doubled
+from stages.geometry.ruled.strip import locate
 from stages.model.features import OUTLINED, NotchSpec
 from stages.model.material import Part
 from stages.model.pattern import Contour, Mark, MarkLayer, NotchPlace, Spot

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import ArrayValue, Vector2, norm, unit
-from stages.geometry.plane import CircularArc, PlaneCurve, Segment
+from stages.geometry.curves.plane import CircularArc, PlaneCurve, Segment
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.features import NotchSpec
 
 

@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 
 from stages.geometry.arrays import Values, cross2
-from stages.geometry.flatmap import Development
-from stages.geometry.plane import PlaneCurve
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.flat.flatmap import Development
 from stages.model.report import Finding
 from stages.model.surface import Placed
 

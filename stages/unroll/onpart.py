@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, along, length, piece_count, polygon, radii, sweeps
 from stages.geometry.arrays import Array, Values
-from stages.geometry.biarc import ZERO_LENGTH_MM
+from stages.geometry.paths.arcpath import ArcPath, along, length, piece_count, polygon, radii, sweeps
+from stages.geometry.paths.biarc import ZERO_LENGTH_MM
 from stages.model.pattern import Contour, Mark
 from stages.model.report import Finding
 

@@ -3,11 +3,11 @@
 import numpy as np
 import shapely
 
-from stages.geometry import arcpath, biarc
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2, Vector2, diagonal
-from stages.geometry.flatmap import DevelopedEdge, DevelopedRuling, Development
-from stages.geometry.plane import PlaneCurve, Segment
+from stages.geometry.curves.plane import PlaneCurve, Segment
+from stages.geometry.flat.flatmap import DevelopedEdge, DevelopedRuling, Development
+from stages.geometry.paths import arcpath, biarc
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.pattern import Contour, EdgeRun
 
 

@@ -10,9 +10,10 @@ from math import pi
 
 import numpy as np
 
-from stages.geometry import arcpath, contours
 from stages.geometry.arrays import Array
-from stages.geometry.cover import doubled
+from stages.geometry.curves import contours
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.cover import doubled
 from stages.model.features import CircleHole, CurveHole, DrilledHole
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric, Outcome, StageReport

@@ -22,9 +22,9 @@ from math import ceil, radians
 import numpy as np
 
 from stages.geometry.arrays import Values, norm
-from stages.geometry.flatmap import Development
-from stages.geometry.tightest import Tight, tightest
-from stages.geometry.turning import FLAT, Run, is_fold, places, run_angle, runs
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.ruled.tightest import Tight, tightest
+from stages.geometry.ruled.turning import FLAT, Run, is_fold, places, run_angle, runs
 from stages.model.material import Material
 from stages.model.report import Finding, Metric, Where
 from stages.model.surface import RuledSurface

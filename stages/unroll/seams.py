@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Indices, Numbers, Values
-from stages.geometry.evenly import Measured, along, measured
-from stages.geometry.plane import PlaneCurve, stretch
+from stages.geometry.curves.evenly import Measured, along, measured
+from stages.geometry.curves.plane import PlaneCurve, stretch
 from stages.model.pattern import EdgeRun, FlatPattern, Spot
 from stages.model.report import Finding
 from stages.model.sewing import SeamSpec

@@ -20,12 +20,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Points2, Values, Vector2, Vector3, dot, norm, unit
-from stages.geometry.development import axes
-from stages.geometry.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
-from stages.geometry.ruled import longest_ruling, sideways
-from stages.geometry.turning import FLAT, PatchTurning, Stretch, is_fold
+from stages.geometry.flat.development import axes
+from stages.geometry.numeric import quadrature
+from stages.geometry.numeric.quadrature import ANTIDERIVATIVE, AT_NODES, ORDER, WEIGHTS
+from stages.geometry.ruled.ruled import longest_ruling, sideways
+from stages.geometry.ruled.turning import FLAT, PatchTurning, Stretch, is_fold
 from stages.model.sheetface import Layers
 from stages.unroll.bent import Bent, neutral_mm
 

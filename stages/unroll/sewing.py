@@ -3,7 +3,7 @@
     sewn(pattern, part, known, work, tol) -> Sewn
 
 The outline that was laid flat becomes the sew line, drawn on SEW along every seam that has an allowance; the outer
-contour is that outline widened (`stages.geometry.allowance`).  Notches are cut into the widened contour across from
+contour is that outline widened (`geometry.paths.allowance`).  Notches are cut into the widened contour across from
 their places on the sew line, and may not be deeper than the allowance there.  Stitch holes lie along the seams.
 How far the contour that is cut is from where it belongs is measured at `LOOKS` points of each edge, not proved.
 """
@@ -14,13 +14,14 @@ from math import fsum
 
 import numpy as np
 
-from stages.geometry import arcpath, contours
-from stages.geometry.allowance import Fault, Strip, Widened, widened
-from stages.geometry.arcpath import ArcPath, piece_count
 from stages.geometry.arrays import Array, Points2, Vector2
-from stages.geometry.cover import doubled
-from stages.geometry.parallel import normals
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves import contours
+from stages.geometry.curves.parallel import normals
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.allowance import Fault, Strip, Widened, widened
+from stages.geometry.paths.arcpath import ArcPath, piece_count
+from stages.geometry.paths.cover import doubled
 from stages.model.features import NotchSpec
 from stages.model.material import Part
 from stages.model.pattern import Contour, FlatPattern, Mark, Spot

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 
-from stages.geometry import quadrature
 from stages.geometry.arrays import Array, Values, Vector2, cross2, dot, norm
-from stages.geometry.ruled import RuledPatch, longest_ruling
+from stages.geometry.numeric import quadrature
+from stages.geometry.ruled.ruled import RuledPatch, longest_ruling
 from stages.unroll.nodes import ACROSS_WEIGHTS, PieceNodes
 
 

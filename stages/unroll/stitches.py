@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import ArrayValue, Points2, Values
-from stages.geometry.parallel import normals
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.parallel import normals
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.pattern import Contour, Mark
 from stages.model.sewing import StitchSpec
 from stages.unroll import outline

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from stages.geometry.arrays import Array, ArrayValue, Matrix, Points2, Values, dot, norm, similarities
-from stages.geometry.flatmap import Development, FlatPiece
+from stages.geometry.flat.flatmap import Development, FlatPiece
 from stages.model.surface import RuledSurface
 from stages.unroll.nodes import ACROSS, ALONG, PieceNodes, at_nodes
 

@@ -6,9 +6,9 @@ frame, from the side of N = p x c0'.
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.flatmap import Development
-from stages.geometry.ruled import RuledPatch, curvature
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.ruled.ruled import RuledPatch, curvature
 from stages.model.pattern import Mark
 from stages.model.surface import RuledSurface
 from stages.unroll.bent import SLIGHT

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from stages.geometry import clearance, enclosed
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array, Points2
-from stages.geometry.clearance import Pieces
+from stages.geometry.paths import clearance, enclosed
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.clearance import Pieces
 from stages.model.pattern import LETTER_WIDTH, Contour, Text
 from stages.model.report import Finding
 

@@ -2,7 +2,7 @@
 
 It lies K t from the inside face of a bend (`stages.model.kfactor`), parallel to the surface as given, which is a face
 of the sheet or its middle (`stages.model.sheetface`).  Parallel surfaces of a developable are developable along the
-same rulings (`stages.geometry.offset`).
+same rulings (`geometry.ruled.offset`).
 
 One K holds for the whole part, that of its smallest inside radius where K goes by r/t.  A K that varied along a ruling
 would leave nothing to unroll: no surface then keeps its lengths.  What the one K neglects is computed, edge by edge
@@ -23,10 +23,10 @@ from fractions import Fraction
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.offset import offset, restricted, tapered
-from stages.geometry.ruled import RuledPatch
-from stages.geometry.tightest import Tight, apexes, tightest
-from stages.geometry.turning import FLAT, PatchTurning, Stretch, Turning, is_fold, turning
+from stages.geometry.ruled.offset import offset, restricted, tapered
+from stages.geometry.ruled.ruled import RuledPatch
+from stages.geometry.ruled.tightest import Tight, apexes, tightest
+from stages.geometry.ruled.turning import FLAT, PatchTurning, Stretch, Turning, is_fold, turning
 from stages.model.kfactor import MIDDLE, k_at
 from stages.model.report import Evidence, Finding, Metric, Where
 from stages.model.sheetface import Layers, layers

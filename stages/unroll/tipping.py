@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, polygon
+from stages.geometry.paths.arcpath import ArcPath, polygon
 from stages.model.pattern import Contour
 from stages.model.process import Process
 from stages.model.report import Finding

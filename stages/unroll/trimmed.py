@@ -15,15 +15,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry import quadrature
 from stages.geometry.arrays import Array, ArrayValue, Values, Vector2, norm
-from stages.geometry.contours import swept
-from stages.geometry.flatmap import Development
-from stages.geometry.mapped import FlatStrip, MappedEdge, backwards, images
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.quadrature import NODES, WEIGHTS
-from stages.geometry.ruled import longest_ruling
-from stages.geometry.strip import Strip, jet
+from stages.geometry.curves.contours import swept
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.flat.mapped import FlatStrip, MappedEdge, backwards, images
+from stages.geometry.numeric import quadrature
+from stages.geometry.numeric.quadrature import NODES, WEIGHTS
+from stages.geometry.ruled.ruled import longest_ruling
+from stages.geometry.ruled.strip import Strip, jet
 from stages.model.pattern import Contour
 from stages.model.report import Metric
 from stages.model.surface import RuledSurface, Trim

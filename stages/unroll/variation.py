@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Array, Values
-from stages.geometry.quadrature import WEIGHTS
-from stages.geometry.tightest import apexes
-from stages.geometry.turning import FLAT, PatchTurning, is_fold
+from stages.geometry.numeric.quadrature import WEIGHTS
+from stages.geometry.ruled.tightest import apexes
+from stages.geometry.ruled.turning import FLAT, PatchTurning, is_fold
 from stages.model.kfactor import Rule, k_at
 from stages.unroll.bent import Bent, inside_radii
 

@@ -1,7 +1,7 @@
 """Whether a pattern can be cut: its holes inside the outline, clear of each other, wide enough, and no web too narrow.
 
-Distances are exact, between the lines and arcs that will be cut (`stages.geometry.clearance`); webs are those between
-two contours and of a contour with itself, told with the places on both sides (`stages.geometry.bridges`).  The width of
+Distances are exact, between the lines and arcs that will be cut (`geometry.paths.clearance`); webs are those between
+two contours and of a contour with itself, told with the places on both sides (`geometry.paths.bridges`).  The width of
 a hole is the diameter of the largest circle in it: exact for a circle, within a hundredth of the chord for any other.
 Where contours are to be offset for the kerf, one that is narrower than it somewhere refuses the part.
 """
@@ -11,15 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry import arcpath, bridges, clearance, enclosed
 from stages.geometry.arrays import Array, Mask
-from stages.geometry.beside import ROUND
-from stages.geometry.bridges import Bridge
-from stages.geometry.clearance import Pieces
-from stages.geometry.compensation import TooNarrow, compensated
-from stages.geometry.contours import area_and_centroid
-from stages.geometry.cover import doubled
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.contours import area_and_centroid
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.paths import arcpath, bridges, clearance, enclosed
+from stages.geometry.paths.beside import ROUND
+from stages.geometry.paths.bridges import Bridge
+from stages.geometry.paths.clearance import Pieces
+from stages.geometry.paths.compensation import TooNarrow, compensated
+from stages.geometry.paths.cover import doubled
 from stages.model.pattern import Contour
 from stages.model.process import Process
 from stages.model.report import Evidence, Finding, Metric, Where

@@ -12,7 +12,7 @@ from math import acos, pi, radians
 import numpy as np
 
 from stages.geometry.arrays import Mask, Values
-from stages.geometry.turning import FLAT, Run, is_fold, places, run_angle, runs
+from stages.geometry.ruled.turning import FLAT, Run, is_fold, places, run_angle, runs
 from stages.model.forming import BendSpec
 from stages.unroll.bent import Bent, across, radii_at
 

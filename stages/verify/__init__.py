@@ -11,7 +11,7 @@ flattening: `unroll` may still refuse.
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.meshfit import MOST_TRIANGLES
+from stages.geometry.mesh.fit import MOST_TRIANGLES
 from stages.model.report import Evidence, Metric, Outcome, StageReport, Where
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from math import inf, isfinite
 
 from stages.errors import NoSolutionError
-from stages.geometry.planarity import is_planar
-from stages.geometry.tightest import Edge, Tight, apexes, tightest
-from stages.geometry.turning import Turning, turning
+from stages.geometry.ruled.planarity import is_planar
+from stages.geometry.ruled.tightest import Edge, Tight, apexes, tightest
+from stages.geometry.ruled.turning import Turning, turning
 from stages.model.material import Material
 from stages.model.report import Evidence, Finding, Metric, Where
 from stages.model.sheetface import Layers, layers

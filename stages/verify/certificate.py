@@ -25,9 +25,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import atan, cos, inf, nextafter, pi
 
-from stages.geometry.bernstein import Polynomial, add, inner, multiply
-from stages.geometry.factors import ONE, Interval, common_factor, quotient, roots_inside
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.numeric.bernstein import Polynomial, add, inner, multiply
+from stages.geometry.numeric.factors import ONE, Interval, common_factor, quotient, roots_inside
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.verify.plucker import Factored, Ingredients, Tangent, ingredients
 from stages.verify.positive import least_multiple, proved_positive, root_above
 from stages.verify.singular import Singular, regular_at_ends, singular_rulings

@@ -4,7 +4,7 @@ Sampled: sheets that pass through each other by less than 1e-5 of the size count
 Where sheets lie on each other over an area, as a pipe wound twice, whether they cross too is not decided: told.
 """
 
-from stages.geometry import crossing
+from stages.geometry.ruled import crossing
 from stages.model.report import Finding
 from stages.model.surface import RuledSurface
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.ruled import RuledPatch, warp
+from stages.geometry.ruled.ruled import RuledPatch, warp
 from stages.verify import sampled
 from stages.verify.certificate import Certified, certify
 from stages.verify.sampled import Extreme, Survey

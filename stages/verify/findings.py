@@ -3,7 +3,7 @@
 import numpy as np
 
 from stages.geometry.arrays import dot, norm
-from stages.geometry.ruled import end_normals, frames, regression
+from stages.geometry.ruled.ruled import end_normals, frames, regression
 from stages.model.report import Finding, Metric, Where
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp

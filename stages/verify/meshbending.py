@@ -1,10 +1,10 @@
 """The sharpest bend of a part that is a mesh, held against what the material allows: as `bending` does for ruled parts.
 
-By the curvatures of the surface fitted to the vertices (`stages.geometry.meshbends`), where the sheet lies about the
+By the curvatures of the surface fitted to the vertices (`geometry.mesh.bending`), where the sheet lies about the
 mesh as the job's face says (`stages.model.sheetface`).  Sampled at the vertices: noise and creases sharpen it.
 """
 
-from stages.geometry.meshbends import MeshBends, bends_of
+from stages.geometry.mesh.bending import MeshBends, bends_of
 from stages.model.report import Finding, Metric, Where
 from stages.model.sheetface import Layers, mesh_layers
 from stages.model.surface import MeshSurface

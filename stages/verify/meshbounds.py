@@ -15,14 +15,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arap import Sheet, strain_tensors
 from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshcurvature import Regions, defects, means, regions, ruling_lengths, shares, spread
-from stages.geometry.meshfit import DEGREE, WIDE_DEGREE, Stars, SurfaceFit, fitted, stars
-from stages.geometry.meshflat import MeshMap, noise, resting
-from stages.geometry.meshlengths import chords, curved, mended
-from stages.geometry.meshtopology import Edges
+from stages.geometry.mesh.arap import Sheet, strain_tensors
+from stages.geometry.mesh.curvature import Regions, defects, means, regions, ruling_lengths, shares, spread
+from stages.geometry.mesh.fit import DEGREE, WIDE_DEGREE, Stars, SurfaceFit, fitted, stars
+from stages.geometry.mesh.flat import MeshMap, noise, resting
+from stages.geometry.mesh.lengths import chords, curved, mended
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import Edges
 
 DEVIATIONS = 3.0
 """Of ten large regions one is further off by chance in one mesh of forty."""

@@ -15,16 +15,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.arap import settled
-from stages.geometry.arapkept import settled_with
 from stages.geometry.arrays import Array, Numbers, Points2, Points3, norm
-from stages.geometry.intrinsic import laid
-from stages.geometry.meshcurvature import defects
-from stages.geometry.meshcut import along, shortest
-from stages.geometry.meshflat import by_side, resting
-from stages.geometry.meshslit import slit
-from stages.geometry.meshtopology import boundary_loops, edge_numbers, edges_of, on_border
-from stages.geometry.scalefactor import scale_factors
+from stages.geometry.mesh.arap import settled
+from stages.geometry.mesh.arapkept import settled_with
+from stages.geometry.mesh.curvature import defects
+from stages.geometry.mesh.cut import along, shortest
+from stages.geometry.mesh.flat import by_side, resting
+from stages.geometry.mesh.intrinsic import laid
+from stages.geometry.mesh.scalefactor import scale_factors
+from stages.geometry.mesh.slit import slit
+from stages.geometry.mesh.topology import boundary_loops, edge_numbers, edges_of, on_border
 from stages.model.report import Finding, Where
 from stages.model.surface import MeshSurface, no_pairs
 from stages.model.tolerances import STRAIN_LIMIT

@@ -22,8 +22,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.meshfit import MOST_TRIANGLES
-from stages.geometry.meshflat import MeshMap
+from stages.geometry.mesh.fit import MOST_TRIANGLES
+from stages.geometry.mesh.flat import MeshMap
 from stages.model.report import Finding, Metric, Where
 from stages.model.surface import MeshSurface, no_pairs
 from stages.model.tolerances import (

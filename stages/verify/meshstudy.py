@@ -3,10 +3,10 @@
 import numpy as np
 
 from stages.geometry.arrays import Array, Numbers
-from stages.geometry.meshfit import fitted, stars
-from stages.geometry.meshflat import AT_REST, at_rest, edge_lengths, noise
-from stages.geometry.meshtopology import Edges, edge_numbers, edges_of
-from stages.geometry.ties import Ties, equal, kept, together
+from stages.geometry.mesh.fit import fitted, stars
+from stages.geometry.mesh.flat import AT_REST, at_rest, edge_lengths, noise
+from stages.geometry.mesh.ties import Ties, equal, kept, together
+from stages.geometry.mesh.topology import Edges, edge_numbers, edges_of
 from stages.model.surface import MeshSurface
 from stages.verify.meshbounds import Studied
 

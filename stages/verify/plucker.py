@@ -20,7 +20,8 @@ left vanishes nowhere.
 from dataclasses import dataclass
 from math import comb, gcd, lcm
 
-from stages.geometry.bernstein import (
+from stages.geometry.curves.curves import Bezier, HomogeneousPoints, RationalBezier, homogeneous
+from stages.geometry.numeric.bernstein import (
     Polynomial,
     Vector,
     add,
@@ -31,9 +32,8 @@ from stages.geometry.bernstein import (
     multiply,
     subtract,
 )
-from stages.geometry.curves import Bezier, HomogeneousPoints, RationalBezier, homogeneous
-from stages.geometry.factors import common_factor, divided_by
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.numeric.factors import common_factor, divided_by
+from stages.geometry.ruled.ruled import RuledPatch
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,10 +11,10 @@ from math import isqrt
 
 import numpy as np
 
-from stages.geometry import bernstein
 from stages.geometry.arrays import Array, Values
-from stages.geometry.bernstein import Polynomial, add, multiply, ratio, rounded
-from stages.geometry.extremum import maximum
+from stages.geometry.numeric import bernstein
+from stages.geometry.numeric.bernstein import Polynomial, add, multiply, ratio, rounded
+from stages.geometry.numeric.extremum import maximum
 
 RAISES = (1e-10, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 0.5, 2.0)
 """The bound tried is (1 + this) times the largest value known; then the proof is given up."""

@@ -10,9 +10,9 @@ from math import inf, pi
 import numpy as np
 
 from stages.geometry.arrays import Array, Values, norm
-from stages.geometry.extremum import maxima
-from stages.geometry.quadrature import integral
-from stages.geometry.ruled import (
+from stages.geometry.numeric.extremum import maxima
+from stages.geometry.numeric.quadrature import integral
+from stages.geometry.ruled.ruled import (
     Frames,
     RuledPatch,
     curvature_of,

@@ -8,8 +8,8 @@ the edge of regression only touches an edge, or the directrices merely stop, and
 from dataclasses import dataclass
 from typing import Literal
 
-from stages.geometry.bernstein import Polynomial, multiply
-from stages.geometry.factors import Interval, leading_zeros, multiplicity, roots_inside, square_free
+from stages.geometry.numeric.bernstein import Polynomial, multiply
+from stages.geometry.numeric.factors import Interval, leading_zeros, multiplicity, roots_inside, square_free
 from stages.verify.plucker import Ingredients
 
 Sort = Literal["zero-ruling", "cusp", "singular-ruling", "edge-of-regression", "touch", "stop", "tangent-ruling"]

@@ -7,7 +7,7 @@ the text again, `faults` and `compare` judge it.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from stages.geometry.compensation import Fit
+from stages.geometry.paths.compensation import Fit
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Outcome, StageReport

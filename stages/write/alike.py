@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Mask, Values
+from stages.geometry.paths.arcpath import ArcPath
 
 SHARE = 0.25
 """Vertices and bulges that agree to this share of what places may be off leave no place, length or area off by more."""

@@ -13,8 +13,8 @@ from math import asin, dist, sin, tan
 
 import numpy as np
 
-from stages.geometry import manypaths
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import ArcPath
 from stages.write.chains import Entity
 
 GAP_MM = 1e-6

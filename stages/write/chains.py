@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, backwards
 from stages.geometry.arrays import Vector2, norm
+from stages.geometry.paths.arcpath import ArcPath, backwards
 
 JOINT_MM = 1e-6
 """Ends as near as this meet: ten decimals of centre and radius are 2e-10 mm, doubles of a radius of 1e9 mm 4e-7 mm."""

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from math import fsum
 
-from stages.geometry.arcpath import ArcPath, length, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, length, transform
 from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern, Text
 from stages.model.report import Finding

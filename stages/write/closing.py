@@ -19,9 +19,9 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from shapely import STRtree, linestrings
 
-from stages.geometry.arcpath import ArcPath, directions, piece_count
 from stages.geometry.arrays import Array, Numbers, Points2, cross2, norm, unit
-from stages.geometry.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.arcpath import ArcPath, directions, piece_count
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
 from stages.write.chains import Entity
 
 MEET_MM = 2e-6

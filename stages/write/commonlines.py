@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, chords, length
 from stages.geometry.arrays import ArrayValue, Points2, Vector2, norm, unit
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.facing import Edge, Middle, Strip, middles
+from stages.geometry.paths.arcpath import ArcPath, chords, length
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.facing import Edge, Middle, Strip, middles
 
 LEAST_COMMON_MM = 20.0
 """Shorter edges are not worth the trouble of one cut for two parts."""

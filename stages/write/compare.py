@@ -12,13 +12,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from stages.errors import NoSolutionError
-from stages.geometry import manypaths
-from stages.geometry.arcpath import ArcPath, area, backwards, bounds, length
 from stages.geometry.arrays import norm
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.hausdorff import hausdorff
-from stages.geometry.outside import beyond
-from stages.geometry.sampling import Resolved, length_and_area, resolved
+from stages.geometry.flat.sampling import Resolved, length_and_area, resolved
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import ArcPath, area, backwards, bounds, length
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.hausdorff import hausdorff
+from stages.geometry.paths.outside import beyond
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric
 from stages.write.alike import Pair, are_alike

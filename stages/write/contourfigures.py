@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from stages.geometry import manypaths
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import Layer
 from stages.write.chains import Entity
 from stages.write.drawing import Drawing, Item

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.geometry import manypaths
-from stages.geometry.arcpath import bounds
 from stages.geometry.arrays import norm
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import bounds
 from stages.write.chains import Entity
 from stages.write.readback import ReadFile
 

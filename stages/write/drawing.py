@@ -11,10 +11,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, distances, piece_count, split, transform
 from stages.geometry.arrays import ArrayValue, Vector2
-from stages.geometry.manypaths import boxes
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.paths.arcpath import ArcPath, distances, piece_count, split, transform
+from stages.geometry.paths.manypaths import boxes
 from stages.model.cutfile import Machine
 from stages.model.helps import Helps
 from stages.model.pattern import LETTER_WIDTH, Drill, FlatPattern, Purpose, Text

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, centres, radii, sweeps
 from stages.geometry.arrays import Array
+from stages.geometry.paths.arcpath import ArcPath, centres, radii, sweeps
 
 DECIMALS = 10
 """Of coordinates in mm: a reader gets them back to 5e-11 mm, and rounding noise such as 6e-17 becomes 0."""

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from stages.geometry import manypaths
-from stages.geometry.arcpath import ArcPath, area, chords, length
 from stages.geometry.arrays import Array, Values, norm
-from stages.geometry.overlap import overlaps
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import ArcPath, area, chords, length
+from stages.geometry.paths.overlap import overlaps
 from stages.model.report import Finding
 from stages.write.chains import Entity
 from stages.write.closing import Closed, is_shared

@@ -13,11 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, piece_count, polygon, radii, split
 from stages.geometry.arrays import norm
-from stages.geometry.biarc import traced
-from stages.geometry.inscribed import chorded, inscribed
-from stages.geometry.outside import outside
+from stages.geometry.paths.arcpath import ArcPath, piece_count, polygon, radii, split
+from stages.geometry.paths.biarc import traced
+from stages.geometry.paths.inscribed import chorded, inscribed
+from stages.geometry.paths.outside import outside
 from stages.model.cutfile import Machine
 from stages.model.pattern import Contour, FlatPattern
 from stages.write.tracing import as_pattern

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry import manypaths
-from stages.geometry.arcpath import ArcPath, backwards
 from stages.geometry.arrays import norm
-from stages.geometry.compensation import Fit
-from stages.geometry.leads import APART_MM, Obstacles
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import ArcPath, backwards
+from stages.geometry.paths.compensation import Fit
+from stages.geometry.paths.leads import APART_MM, Obstacles
 from stages.model.helps import Helps
 from stages.model.report import Finding
 from stages.write.chains import Entity

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, backwards, bounds, length, piece_count, split, sweeps
 from stages.geometry.arrays import Points2, Vector2
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.leads import Obstacles, off, round_in, straight
-from stages.geometry.manypaths import moved
-from stages.geometry.pathparts import begun, direction_at
-from stages.geometry.rigid import Rigid2
-from stages.geometry.tabs import Gaps, Wish, gaps, opened
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, backwards, bounds, length, piece_count, split, sweeps
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.leads import Obstacles, off, round_in, straight
+from stages.geometry.paths.manypaths import moved
+from stages.geometry.paths.parts import begun, direction_at
+from stages.geometry.paths.tabs import Gaps, Wish, gaps, opened
 from stages.model.cutfile import Machine
 from stages.model.helps import Helps, Lead, Tabs
 from stages.write.flavours import as_written

@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, transform
 from stages.geometry.arrays import Array, Points2
-from stages.geometry.leads import APART_MM, Obstacles
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, transform
+from stages.geometry.paths.leads import APART_MM, Obstacles
 from stages.model.cutfile import Machine
 from stages.model.helps import Helps
 from stages.write.drawing import Drawing, Item

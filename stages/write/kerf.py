@@ -7,11 +7,11 @@ judged by distances, in closed form, between what they hold and the nominal cont
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from stages.geometry import manyfits
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.beside import Corners
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.compensation import Fit, TooNarrow, compensated
+from stages.geometry.paths import manyfits
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.beside import Corners
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.compensation import Fit, TooNarrow, compensated
 from stages.model.cutfile import Machine
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Metric

@@ -9,9 +9,9 @@ import numpy as np
 from shapely import LineString, Polygon, get_parts, prepare
 from shapely.geometry.base import BaseGeometry
 
-from stages.geometry.arcpath import ArcPath, polygon
 from stages.geometry.arrays import Points2
-from stages.geometry.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.arcpath import ArcPath, polygon
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
 
 POLYGON_MM = 0.01
 

@@ -13,9 +13,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.hausdorff import hausdorff
-from stages.geometry.sampling import resolved
+from stages.geometry.flat.sampling import resolved
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.hausdorff import hausdorff
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.patternlayers import CURVE, DRILL, NOTCH_LAYERS, TURN

@@ -19,8 +19,8 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, chords, directions, piece_count, radii, split, sweeps
 from stages.geometry.arrays import Array, norm
+from stages.geometry.paths.arcpath import ArcPath, chords, directions, piece_count, radii, split, sweeps
 from stages.model.cutfile import Machine
 from stages.write.colours import FULL, on_paper
 from stages.write.drawing import Drawing, Label

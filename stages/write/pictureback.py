@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, area, length, sweeps
+from stages.geometry.paths.arcpath import ArcPath, area, length, sweeps
 from stages.model.cutfile import CutFile, Machine
 from stages.model.report import Finding
 from stages.write.drawing import Drawing

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from stages.geometry.arcpath import area, length
 from stages.geometry.arrays import Array
+from stages.geometry.paths.arcpath import area, length
 from stages.model.cutfile import Machine
 from stages.model.patternlayers import CURVE, TURN, VALIDATION
 from stages.model.report import Finding

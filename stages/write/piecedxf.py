@@ -15,8 +15,8 @@ from ezdxf.document import Drawing as Document
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.layouts.base import BaseLayout
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Array
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import Machine
 from stages.model.pattern import Traced
 from stages.model.patternlayers import BOUNDARY, CURVE, POINT_COLOUR, STANDARD, TURN, VALIDATION

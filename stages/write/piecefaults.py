@@ -13,9 +13,9 @@ from math import cos, isfinite, radians, sin
 import numpy as np
 from shapely import Point, Polygon
 
-from stages.geometry.arcpath import ArcPath, area
 from stages.geometry.arrays import Points2
-from stages.geometry.hausdorff import nearest
+from stages.geometry.paths.arcpath import ArcPath, area
+from stages.geometry.paths.hausdorff import nearest
 from stages.model.patternlayers import (
     BOUNDARY,
     CURVE,

@@ -17,9 +17,9 @@ from math import cos, radians, sin
 import numpy as np
 from shapely import LineString, Point, Polygon, get_parts
 
-from stages.geometry.arcpath import ArcPath, bounds, transform
 from stages.geometry.arrays import ArrayValue, Points2, Vector2
-from stages.geometry.rigid import Rigid2, apply, matrix
+from stages.geometry.curves.rigid import Rigid2, apply, matrix
+from stages.geometry.paths.arcpath import ArcPath, bounds, transform
 from stages.model.cutfile import Machine
 from stages.model.pattern import Contour, FlatPattern, NotchPlace, Purpose, Traced
 from stages.model.patternlayers import DRILL, NOTCH_LAYERS

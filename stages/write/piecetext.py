@@ -11,7 +11,7 @@ from itertools import chain
 
 import numpy as np
 
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
 from stages.model.cutfile import Style
 from stages.model.pattern import LETTER_WIDTH, FlatPattern
 from stages.write.drawing import LABEL_FILL, LABEL_LEAST_MM, Label, room

@@ -25,8 +25,8 @@ from ezdxf.entities.text import Text
 from ezdxf.filemanagement import read as read_dxf
 from ezdxf.lldxf.const import DXFError
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Points3
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import PROFILES, Layer
 from stages.write.blocks import drawn
 from stages.write.chains import Entity, Writing, chained

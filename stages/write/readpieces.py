@@ -19,7 +19,7 @@ from ezdxf.entities.text import Text
 from ezdxf.filemanagement import read as read_dxf
 from ezdxf.lldxf.const import DXFError
 
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.write.readback import is_plain, old_path
 
 LAYOUTS = ("*MODEL_SPACE", "*PAPER_SPACE", "$MODEL_SPACE", "$PAPER_SPACE")

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, centres, chords, piece_count, radii, sweeps
 from stages.geometry.arrays import Indices
+from stages.geometry.paths.arcpath import ArcPath, centres, chords, piece_count, radii, sweeps
 from stages.model.cutfile import Layer, Machine
 from stages.write.drawing import Drawing, Item, Label
 from stages.write.entities import BULGE_DECIMALS, DECIMALS, circle, rounded

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon, STRtree, buffer, contains, linearrings, polygons, prepare
 
-from stages.geometry import manypaths
-from stages.geometry.arcpath import ArcPath, polygon
 from stages.geometry.arrays import Array, Mask
+from stages.geometry.paths import manypaths
+from stages.geometry.paths.arcpath import ArcPath, polygon
 from stages.write.chains import Entity
 from stages.write.closing import Closed, Outline
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, bounds, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, bounds, transform
 from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import SheetLayout

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, joint_turns, lengths, sweeps
 from stages.geometry.arrays import Numbers, Values
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.pathparts import place_at, settled
+from stages.geometry.paths.arcpath import ArcPath, joint_turns, lengths, sweeps
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.parts import place_at, settled
 from stages.model.helps import StartRule
 
 SAME_MM = 1e-6

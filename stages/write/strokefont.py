@@ -7,8 +7,8 @@ is not printable ASCII has no letter here.
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Points2, Vector2
+from stages.geometry.paths.arcpath import ArcPath
 
 CAPITAL = 6.0
 """Grid lines that a capital is high: as high as the text."""

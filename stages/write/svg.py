@@ -18,8 +18,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, chords, radii, sweeps
 from stages.geometry.arrays import Points2, Vector2, norm
+from stages.geometry.paths.arcpath import ArcPath, chords, radii, sweeps
 from stages.model.cutfile import Machine
 from stages.write.colours import rgb, web
 from stages.write.drawing import Drawing, Item, Label, extent

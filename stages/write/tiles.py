@@ -11,7 +11,7 @@ from math import ceil
 
 from shapely import LineString, MultiPolygon, Polygon, STRtree, box
 
-from stages.geometry.arcpath import ArcPath, polygon
+from stages.geometry.paths.arcpath import ArcPath, polygon
 from stages.model.cutfile import Paper
 
 PAPERS: dict[Paper, tuple[float, float]] = {"A4": (210.0, 297.0), "A3": (297.0, 420.0)}

@@ -17,11 +17,11 @@ from math import pi, radians
 import numpy as np
 from scipy.spatial import cKDTree
 
-from stages.geometry.arcpath import ArcPath, distances, joint_turns, piece_count, polygon
 from stages.geometry.arrays import Array, Points2, Vector2, norm
-from stages.geometry.inscribed import has_length, inscribed
-from stages.geometry.plane import CircularArc, PlaneCurve
-from stages.geometry.sampling import resolved, samples
+from stages.geometry.curves.plane import CircularArc, PlaneCurve
+from stages.geometry.flat.sampling import resolved, samples
+from stages.geometry.paths.arcpath import ArcPath, distances, joint_turns, piece_count, polygon
+from stages.geometry.paths.inscribed import has_length, inscribed
 from stages.model.pattern import Contour, Drill, FlatPattern, Traced
 
 CORNER_RAD = radians(0.5)

@@ -7,7 +7,7 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from stages.construct import construct
-from stages.geometry.development import develop
+from stages.geometry.flat.development import develop
 from stages.model.forming import BendSpec
 from stages.model.kfactor import KFactor
 from stages.model.material import Material

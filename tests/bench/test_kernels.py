@@ -13,11 +13,11 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from stages.construct.minimax import solve
 from stages.construct.quintic import cone_ends
-from stages.geometry.cover import doubled
-from stages.geometry.crossing import Search, crossings
-from stages.geometry.development import develop
-from stages.geometry.relaxed import relaxed
-from stages.geometry.ruled import size_of
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.relaxed import relaxed
+from stages.geometry.paths.cover import doubled
+from stages.geometry.ruled.crossing import Search, crossings
+from stages.geometry.ruled.ruled import size_of
 from stages.model.part import QuinticCone
 from stages.unroll.distortion import measure
 from stages.unroll.divide import blanks
@@ -33,7 +33,7 @@ from tests.parts import (
     part,
     patches,
 )
-from tests.stages.geometry.test_cover import sector
+from tests.stages.geometry.paths.test_cover import sector
 from tests.stages.unroll.maps import HONEST, TOL, surface, value
 from tests.stages.unroll.test_divide import certified, helix_strip
 from tests.stages.verify.families import perturbed

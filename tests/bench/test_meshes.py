@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 from tests.bench.topics.flatteners import planish
 from tests.meshes import KNOWN, Known, misplaced, right_cone, single_precision
 

@@ -6,11 +6,11 @@ Goals: welded, oriented, loops found and cut 1.5 s; crossings 5 s.  A million tr
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshcross import crossings
-from stages.geometry.meshcut import opened
-from stages.geometry.meshrepair import repaired
-from stages.geometry.meshtopology import edges_of, pieces, pinched, turned
+from stages.geometry.mesh.crossing import crossings
+from stages.geometry.mesh.cut import opened
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.repair import repaired
+from stages.geometry.mesh.topology import edges_of, pieces, pinched, turned
 from tests.tubes import soup, tube
 
 SHELL = tube(500, 100, (50.0, 20.0), 80.0)

@@ -24,7 +24,7 @@ from pipeline.jobfile import read
 from pipeline.outputs import stored, views
 from pipeline.report.document import document, encoded
 from pipeline.report.render import FORMATS, Made
-from pipeline.report.viewentries import VIEW
+from pipeline.report.view.entries import VIEW
 from pipeline.run import JobResult, run_job
 from tests.bench.manyparts import FAMILIES, job_text
 from tests.browser.chromium import WITH_WEBGL, Page, needs_chromium, opened

@@ -19,8 +19,8 @@ from pipeline.files import file_names
 from pipeline.job import Job, job_of
 from pipeline.jobfile import read
 from pipeline.run import JobResult, PartRun, Runner, cut_patterns, finish, run_job
-from stages.geometry.arcpath import ArcPath, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, transform
 from stages.model.cutfile import Flavour, Machine, Side
 from stages.model.pattern import FlatPattern
 from stages.model.patternlayers import PATTERN_LAYERS

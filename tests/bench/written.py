@@ -23,7 +23,7 @@ from ezdxf.entities.polyline import Polyline
 from shapely import LineString, STRtree, points
 
 from stages.geometry.arrays import Array, Points2, Vector2
-from stages.geometry.plane import PlaneCurve
+from stages.geometry.curves.plane import PlaneCurve
 from stages.model.cutfile import Layer
 from stages.model.pattern import FlatPattern
 

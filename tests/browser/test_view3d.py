@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from pipeline.report.html import LIBRARY, SCRIPTS
-from pipeline.report.pictures_net import net, view_direction
-from pipeline.report.viewformed import ruled_part
+from pipeline.report.pictures.net import net, view_direction
+from pipeline.report.view.formed import ruled_part
 from stages.geometry.arrays import Array
-from stages.geometry.ruled import at, curvature
+from stages.geometry.ruled.ruled import at, curvature
 from stages.model.surface import RuledSurface
 from tests.browser.chromium import WITH_WEBGL, WITHOUT_WEBGL, needs_chromium, opened
 from tests.near import assert_near, assert_relative

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.asmade_nominal import Nominal, nominal_of
+from pipeline.asmade.nominal import Nominal, nominal_of
 from tests.pipeline.asmadejobs import JOB, planish
 from tests.pipeline.jobs import write_job
 

@@ -12,8 +12,8 @@ import numpy as np
 from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.outputs import outputs
-from pipeline.report.pictures import part_picture
-from pipeline.report.pictures_branched import as_mesh
+from pipeline.report.pictures.branched import as_mesh
+from pipeline.report.pictures.part import part_picture
 from pipeline.run import JobResult, run_job
 from stages.geometry.arrays import norm
 from stages.model.surface import BranchedSurface

@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.certified import certified_files, written
 from pipeline.cli import main
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.cutfile import CutFile, Machine
 from stages.model.report import Finding
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout

@@ -9,7 +9,7 @@ import pytest
 from pipeline.rates import Rates
 from pipeline.report.costs import Costs, cost_line, costs, costs_entry
 from pipeline.report.cuts import UNKNOWN, Cuts, cuts_of_copies, cuts_of_files
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.pattern import FlatPattern
 from stages.model.report import StageReport
 from stages.model.sheet import Placement, Rectangle, Sheet, SheetLayout

@@ -11,8 +11,8 @@ import trimesh
 
 from pipeline import meshfiles
 from pipeline.meshfiles import MeshFileError, parsed
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshrepair import repaired
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.repair import repaired
 from tests.near import assert_near
 from tests.tubes import holed, rolled, soup
 

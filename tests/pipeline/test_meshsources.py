@@ -13,7 +13,7 @@ from pipeline.kinds import template
 from pipeline.run import run_job
 from stages.construct import construct
 from stages.errors import BadInputError
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 from stages.model.meshes import MeshFile
 from tests.near import assert_near
 from tests.pipeline.jobs import STOCK, write_job

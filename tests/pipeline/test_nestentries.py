@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.report.document import encoded
 from pipeline.report.nestentries import StockEntry, WishEntry, options_entry, sheet_of, stock_entry, wish_entry
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.sheet import NestOptions, Sheet, Zone
 from tests.stages.nest.shapes import rectangle
 

@@ -9,7 +9,7 @@ from pipeline.job import Job, job_of
 from pipeline.jobfile import read
 from stages.construct import construct
 from stages.errors import BadInputError
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 from tests.meshes import jittered
 
 JOB = """schema = 1

@@ -13,7 +13,7 @@ from pipeline.jobfile import read
 from pipeline.outputs import outputs
 from pipeline.run import run_job
 from stages.errors import BadInputError
-from stages.geometry.arcpath import area
+from stages.geometry.paths.arcpath import area
 from stages.write.readpieces import read_pieces
 from tests.near import assert_near
 from tests.pipeline.jobs import PLATE, STOCK, TWISTED, write_job

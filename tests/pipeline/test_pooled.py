@@ -17,7 +17,7 @@ from pipeline.pooled import told_apart
 from pipeline.report.pooldocument import pool_lines, pool_outputs
 from pipeline.run import run_job
 from pipeline.store import write_files
-from stages.geometry import arcpath
+from stages.geometry.paths import arcpath
 from tests.near import assert_near
 from tests.pipeline.jobs import STOCK, write_job
 from tests.pipeline.pooledjobs import (

@@ -15,8 +15,8 @@ from pipeline.jobfile import read as read_job
 from pipeline.outputs import outputs
 from pipeline.run import run_job
 from pipeline.store import write_files
-from stages.geometry import contours
-from stages.geometry.arcpath import area
+from stages.geometry.curves import contours
+from stages.geometry.paths.arcpath import area
 from stages.model.pattern import FlatPattern
 from stages.write.chains import Entity
 from stages.write.readback import read

@@ -127,6 +127,6 @@ def test_the_libraries_that_read_the_files_of_a_job_are_told_with_their_versions
 
 
 def test_every_cad_file_that_is_read_has_its_library_told() -> None:
-    from pipeline.cadfiles import SORTS
+    from pipeline.cad.files import SORTS
 
     assert {end for ends in provenance.CAD_LIBRARIES.values() for end in ends} == set(SORTS)

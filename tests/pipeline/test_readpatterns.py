@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pipeline.readpatterns import NoPatternError, read_pattern
-from stages.geometry.arcpath import ArcPath, area, backwards, bounds, length
+from stages.geometry.paths.arcpath import ArcPath, area, backwards, bounds, length
 from stages.model.cutfile import Machine
 from stages.model.pattern import Contour, FlatPattern, Mark, Text
 from stages.write import write
@@ -22,7 +22,7 @@ BEND = ArcPath(np.array([[2.0, 5.0], [9.0, 6.0], [30.0, 5.0]]), np.array([0.1, 0
 
 
 def contour(path: ArcPath) -> Contour:
-    from stages.geometry.pathedges import edges_of
+    from stages.geometry.paths.edges import edges_of
 
     return Contour(edges_of(path), path, 0.05)
 

@@ -17,7 +17,7 @@ from pipeline.pooled import Pool, pool
 from pipeline.run import JobResult, run_job
 from pipeline.store import write_files
 from pipeline.supply import supply_of
-from stages.geometry.arcpath import area, length
+from stages.geometry.paths.arcpath import area, length
 from stages.model.cutfile import Flavour
 from stages.model.pattern import FlatPattern
 from stages.model.patternlayers import DRILL, NOTCH_LAYERS

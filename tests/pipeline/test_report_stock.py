@@ -12,7 +12,7 @@ from pipeline.jobfile import read
 from pipeline.outputs import outputs
 from pipeline.report.stockfigures import layout_lines
 from pipeline.run import run_job
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.sheet import Placement, Rectangle, Sheet, SheetLayout
 from tests.near import assert_near
 from tests.pipeline.jobs import PLATE, STOCK, write_job

@@ -15,7 +15,7 @@ from stages.model.tolerances import Tolerances
 from stages.unroll.stitches import Stitches
 from tests.near import assert_near, assert_relative
 from tests.parts import Table, read
-from tests.stages.geometry.test_drill import HALF_TUBE
+from tests.stages.geometry.ruled.test_drill import HALF_TUBE
 
 
 def part(name: str, *seams: Table, **keys: object) -> PartSpec:

@@ -16,8 +16,9 @@ from pipeline.jobfile import read
 from pipeline.outputs import outputs
 from pipeline.readpatterns import read_pattern
 from pipeline.run import JobResult, PartRun, run_job
-from stages.geometry import arcpath, contours
 from stages.geometry.arrays import Points2
+from stages.geometry.curves import contours
+from stages.geometry.paths import arcpath
 from stages.model.cutfile import PROFILES
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Metric

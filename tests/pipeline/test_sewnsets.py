@@ -12,7 +12,8 @@ from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.run import JobResult, run_job
 from stages.errors import BadInputError
-from stages.geometry import arcpath, contours
+from stages.geometry.curves import contours
+from stages.geometry.paths import arcpath
 from tests.near import assert_near
 from tests.pipeline.jobs import write_job
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from pipeline.report.markup import percent
 from pipeline.report.pages import asset
-from pipeline.report.pictures_sheet import FILLS
+from pipeline.report.pictures.sheet import FILLS
 from pipeline.report.shades import BACK_RGB, FRONT_RGB, LIGHT
 from pipeline.report.summarycharts import told
-from pipeline.report.viewcells import COLUMNS
+from pipeline.report.view.cells import COLUMNS
 
 
 def numbers(script: str, name: str) -> list[float]:

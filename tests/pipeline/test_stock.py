@@ -8,7 +8,7 @@ import pytest
 from pipeline.job import Job, job_of
 from pipeline.jobfile import read
 from stages.errors import BadInputError
-from stages.geometry.arcpath import area
+from stages.geometry.paths.arcpath import area
 from stages.model.sheet import NestOptions
 from tests.near import assert_near
 from tests.pipeline.jobs import PLATE, write_job

@@ -10,7 +10,7 @@ from ezdxf.layouts import Modelspace
 from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.kinds import template
-from stages.geometry.arcpath import area
+from stages.geometry.paths.arcpath import area
 from tests.near import assert_near
 from tests.pipeline.jobs import PLATE, write_job
 from tests.pipeline.stockjobs import ROW, drawing, job, outline, refused, remnants

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from stages.geometry.arcpath import area
+from stages.geometry.paths.arcpath import area
 from tests.pipeline.stockjobs import ROW, SIDE, drawing, job, outline, refused
 
 

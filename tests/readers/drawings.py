@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import cast, get_args
 
-from stages.geometry.arcpath import length
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import length
 from stages.model.cutfile import Flavour, Machine, Version
 from stages.model.pattern import FlatPattern, Mark
 from stages.model.patternlayers import BOUNDARY, CUT_OUT, PATTERN_LAYERS, VALIDATION

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from stages.geometry import arcpath
-from stages.geometry.arcpath import ArcPath
 from stages.geometry.arrays import Points2
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.write.drawing import Item, extent
 from tests.readers.drawings import Sample
 

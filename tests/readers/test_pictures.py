@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import bounds, length
 from stages.geometry.arrays import Array
+from stages.geometry.paths.arcpath import bounds, length
 from stages.model.cutfile import Machine
 from stages.write.drawing import Drawing, extent, flat_drawing, sheet_drawing
 from stages.write.pdf import LINE_MM

@@ -7,8 +7,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath, polygon
 from stages.geometry.arrays import Points2
+from stages.geometry.paths.arcpath import ArcPath, polygon
 from tests.near import assert_near
 from tests.readers.drawings import Sample, samples
 from tests.readers.reading import Figures, Fineness, Piece, Reader, Reading, complaints, loops, measured

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from pipeline.report.render import Made
-from pipeline.report.traveller import traveller_pdf
-from pipeline.report.traveller_numbers import millimetres
+from pipeline.report.traveller.book import traveller_pdf
+from pipeline.report.traveller.numbers import millimetres
 from tests.pipeline.jobs import CONE, STOCK
-from tests.pipeline.test_traveller import LARGE, PLATE, produced
+from tests.pipeline.report.traveller.test_book import LARGE, PLATE, produced
 from tests.readers.test_pictures import GRID_MM, lines, there
 
 XHTML = "{http://www.w3.org/1999/xhtml}"

@@ -12,9 +12,9 @@ import pytest
 
 from stages.construct import construct
 from stages.construct.sets import parts_of
-from stages.geometry.arcpath import ArcPath, distances, piece_count, split
 from stages.geometry.arrays import Array, Points2, Points3, cross3, dot, unit
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.paths.arcpath import ArcPath, distances, piece_count, split
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.pattern import FlatPattern
 from stages.model.surface import RuledSurface
 from stages.unroll import unroll

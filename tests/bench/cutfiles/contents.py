@@ -10,9 +10,9 @@ from ezdxf.entities.circle import Circle
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.entities.lwpolyline import LWPolyline
 
-from stages.geometry.arcpath import ArcPath, joint_turns
 from stages.geometry.arrays import Mask, norm
-from stages.geometry.biarc import LEAST_PIECE_MM
+from stages.geometry.paths.arcpath import ArcPath, joint_turns
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
 from stages.model.pattern import Contour, FlatPattern
 from stages.write.faults import KINDS, faults
 from stages.write.readback import read

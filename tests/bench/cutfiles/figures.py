@@ -12,7 +12,7 @@ import ezdxf
 import numpy as np
 
 from pipeline.run import Runner, finish
-from stages.geometry.arcpath import ArcPath, area, chords, distances, length, piece_count, split
+from stages.geometry.paths.arcpath import ArcPath, area, chords, distances, length, piece_count, split
 from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern
 from stages.model.patternlayers import PATTERN_LAYERS

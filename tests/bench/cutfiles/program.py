@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from stages.geometry.arcpath import piece_count
+from stages.geometry.paths.arcpath import piece_count
 from stages.model.cutfile import Flavour
 from tests.bench.cutfiles.rows import Row, counted
 from tests.pipeline.test_same_bytes import SCRIPT

@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, bounds
+from stages.geometry.paths.arcpath import ArcPath, bounds
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import NestOptions, Sheet, Zone
 from tests.stages.nest.shapes import contour, pattern

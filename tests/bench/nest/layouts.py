@@ -21,13 +21,13 @@ from typing import Literal
 import msgspec
 import numpy as np
 
-from stages.geometry.arcpath import area, bounds, transform
 from stages.geometry.arrays import norm
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import area, bounds, transform
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout
-from stages.nest.legal import certify, passed
+from stages.nest.legal.certify import certify, passed
 from tests.bench.nest.instances import Instance
 
 Box = tuple[float, float, float, float]

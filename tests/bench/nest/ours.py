@@ -10,7 +10,7 @@ from time import perf_counter
 
 import msgspec
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.sheet import Nesting
 from stages.model.tolerances import Tolerances
 from stages.nest import nest

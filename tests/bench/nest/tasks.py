@@ -12,7 +12,7 @@ from shapely import Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Quality, Sheet
 from tests.bench.nest.instances import Instance

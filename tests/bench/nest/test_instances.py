@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from stages.geometry.arcpath import area
+from stages.geometry.paths.arcpath import area
 from tests.bench.nest.instances import FOLDER, Instance, from_json, load, on_sheets
 from tests.bench.nest.layouts import net_area, net_area_of_sheet
 from tests.near import assert_near

@@ -14,9 +14,9 @@ import ezdxf
 import numpy as np
 
 from stages.geometry.arrays import Array, Points2
-from stages.geometry.biarc import trace
-from stages.geometry.plane import PlaneCurve, Segment
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.plane import PlaneCurve, Segment
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.biarc import trace
 from stages.model.cutfile import CutFile, Flavour, Machine
 from stages.model.helps import Helps, Lead, Tabs
 from stages.model.pattern import Contour, FlatPattern

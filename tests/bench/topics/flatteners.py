@@ -12,9 +12,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from stages.geometry.arrays import Array, Points2, Points3, Values, cross3, dot, norm
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshflat import flattened
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.mesh.flat import flattened
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.ruled.ruled import RuledPatch
 
 ROUNDS = 100
 """Of libigl's local and global steps: more do not change the first two digits."""

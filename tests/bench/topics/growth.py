@@ -18,7 +18,7 @@ from pipeline.batch.runner import Stop
 from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.run import run_job
-from stages.geometry.mesh import Mesh
+from stages.geometry.mesh.mesh import Mesh
 from stages.model.tolerances import Tolerances
 from stages.nest import nest
 from tests.bench.batch import WORKERS, at_once, manifest, run, tell_nothing

@@ -8,7 +8,7 @@ from math import isfinite
 import numpy as np
 import pytest
 
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.plane import CircularArc
 from tests.bench.rows import Asked, Row, identity
 from tests.bench.sections import alone
 from tests.bench.timing import measured

@@ -13,9 +13,9 @@ import numpy as np
 from mpmath import mpf
 
 from stages.geometry.arrays import Points2, Points3, Values, norm
-from stages.geometry.curves import Bezier, Circular
-from stages.geometry.development import develop
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Bezier, Circular
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.ruled import RuledPatch, between
 from tests import oracles
 from tests.bench.rows import Asked, Extent, Row
 from tests.bench.surroundings import version

@@ -17,8 +17,8 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from stages.geometry.mesh import Mesh
-from stages.geometry.ruled import RuledPatch, warp
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.ruled.ruled import RuledPatch, warp
 from stages.verify.certificate import certify
 from tests.bench.rows import Asked, Extent, Row
 from tests.bench.surroundings import version

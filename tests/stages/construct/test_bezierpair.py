@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.curves import Bezier
-from stages.geometry.ruled import frames, regression
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.ruled.ruled import frames, regression
 from stages.model.surface import RuledSurface
 from tests import oracles
 from tests.near import assert_near, assert_relative

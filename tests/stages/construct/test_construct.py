@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import norm
-from stages.geometry.ruled import at
+from stages.geometry.ruled.ruled import at
 from stages.model.report import Metric, StageReport
 from stages.model.surface import Plate, RuledSurface
 from stages.model.tolerances import Tolerances
@@ -222,7 +222,7 @@ def test_a_chain_with_a_gap_is_refused_with_its_width() -> None:
 
 
 def test_a_plate_has_its_outline_counter_clockwise_and_its_holes_clockwise() -> None:
-    from stages.geometry.contours import area
+    from stages.geometry.curves.contours import area
 
     for outline in ([[0, 0], [30, 0], [30, 20], [0, 20], [0, 0]], [[0, 0], [0, 20], [30, 20], [30, 0], [0, 0]]):
         plate = passage(PLATE | {"outline": {"polyline": outline}}).surface

@@ -12,8 +12,8 @@ from scipy.interpolate import BSpline
 
 from stages.construct.curves import Chain, chain, largest_gap, plane_axes, ruled_patches
 from stages.geometry.arrays import EPS, Array, norm
-from stages.geometry.curves import Bezier
-from stages.geometry.ruled import at
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.ruled.ruled import at
 from stages.model.curves import CurveSpec
 from tests.near import assert_near, assert_relative
 from tests.parts import number

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from mpmath import ellipe, mp, mpf
 
 from stages.geometry.arrays import EPS, norm
-from stages.geometry.curves import RationalBezier
-from stages.geometry.ruled import warp
-from stages.geometry.stepped import Stepped
+from stages.geometry.curves.curves import RationalBezier
+from stages.geometry.curves.stepped import Stepped
+from stages.geometry.ruled.ruled import warp
 from tests import oracles
 from tests.near import assert_near, assert_relative
 from tests.parts import Table, edges, passage, patches, whole

@@ -11,7 +11,7 @@ from stages.construct import minimax
 from stages.construct.minimax import GAP, largest_speed, solve, stationary
 from stages.construct.quintic import End, cone_ends, directrix, vector
 from stages.errors import NoSolutionError
-from stages.geometry.curves import bezier
+from stages.geometry.curves.curves import bezier
 from stages.model.part import QuinticCone
 from tests.near import assert_near, assert_relative
 from tests.parts import EXAMPLE_3, part

@@ -8,8 +8,8 @@ from mpmath import mp
 
 from stages.construct import construct
 from stages.construct.sets import Edges, Seam, parts_of, seams_of
-from stages.geometry import contours
 from stages.geometry.arrays import norm
+from stages.geometry.curves import contours
 from stages.model.ducts import is_set
 from stages.model.features import CurveMark, PointMark
 from stages.model.material import Part

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from stages.construct.pieces import in_order
-from stages.geometry.backwards import exchanged, reversed_patch
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.backwards import exchanged, reversed_patch
+from stages.geometry.ruled.ruled import RuledPatch
 from tests.near import assert_near, assert_relative
 from tests.parts import (
     AUMANN_CUBIC,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from stages.construct.quintic import End, cone_over, directrix, length_exact, patch_between, unit_exact
 from stages.construct.theorems import coefficients_a, coefficients_c
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.ruled import RuledPatch
 from tests.parts import EXAMPLE_2_CYLINDER, QUINTIC_TANGENT, patches
 from tests.strategies import decimals, points
 

@@ -8,7 +8,7 @@ import pytest
 
 from stages.construct.curves import chain
 from stages.construct.railkind import rail_strip
-from stages.geometry.railstrip import closed_bounds
+from stages.geometry.rails.strip import closed_bounds
 from stages.model.rails import Rails
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import Tolerances

@@ -10,11 +10,11 @@ import pytest
 
 from stages.construct.railkind import rail_strip
 from stages.construct.rails import pieces
-from stages.geometry.curves import Bezier, bezier, exactly
-from stages.geometry.joins import join
-from stages.geometry.railgraph import Rules
-from stages.geometry.railstrip import bounds, open_strip
-from stages.geometry.ruled import warp
+from stages.geometry.curves.curves import Bezier, bezier, exactly
+from stages.geometry.rails.graph import Rules
+from stages.geometry.rails.strip import bounds, open_strip
+from stages.geometry.ruled.joins import join
+from stages.geometry.ruled.ruled import warp
 from stages.model.rails import Rails
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import Tolerances

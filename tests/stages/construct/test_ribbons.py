@@ -8,7 +8,7 @@ import pytest
 from stages.construct.curves import chain
 from stages.construct.ribbons import normal_chain, ribbon
 from stages.geometry.arrays import cross3, dot, norm, unit
-from stages.geometry.ruled import at, end_normals, frames, warp
+from stages.geometry.ruled.ruled import at, end_normals, frames, warp
 from stages.model.envelopes import Ribbon
 from stages.model.tolerances import Tolerances
 from tests.near import assert_near, assert_relative

@@ -5,7 +5,7 @@ import pytest
 from mpmath import cos, ellipe, mp, mpf, sin, sqrt
 
 from stages.geometry.arrays import EPS, norm
-from stages.geometry.ruled import warp
+from stages.geometry.ruled.ruled import warp
 from tests import oracles
 from tests.near import assert_near, assert_relative
 from tests.parts import Table, edges, passage, patches, troubles, whole

@@ -9,7 +9,7 @@ from mpmath import ellipe, mp, mpf
 from stages.construct import construct
 from stages.construct.sets import Edges, Seam, parts_of, seams_of
 from stages.geometry.arrays import EPS
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.material import Part
 from stages.model.surface import RuledSurface
 from stages.unroll import unroll

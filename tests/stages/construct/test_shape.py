@@ -10,8 +10,8 @@ from stages.construct.energy import least_energy
 from stages.construct.minimax import solve
 from stages.construct.quintic import cone_ends, directrix, ends_of
 from stages.geometry.arrays import cross2
-from stages.geometry.curves import Bezier
-from stages.geometry.development import develop
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.flat.development import develop
 from stages.model.quintics import QuinticCone, QuinticRuled
 from stages.model.surface import RuledSurface
 from tests.near import assert_near, assert_relative

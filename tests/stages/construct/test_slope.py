@@ -10,9 +10,9 @@ import pytest
 from stages.construct import slope as construct
 from stages.construct.curves import chain
 from stages.geometry.arrays import EPS, dot, norm
-from stages.geometry.curves import Bezier, Circular, bezier, exactly
-from stages.geometry.extremum import maximum
-from stages.geometry.ruled import warp
+from stages.geometry.curves.curves import Bezier, Circular, bezier, exactly
+from stages.geometry.numeric.extremum import maximum
+from stages.geometry.ruled.ruled import warp
 from stages.model.developables import Slope
 from stages.model.material import Material
 from stages.model.tolerances import Tolerances

@@ -5,8 +5,8 @@ import pytest
 
 from pipeline.decode import Walk, decode
 from stages.construct.stockoutline import NoContourError, closed_edges
-from stages.geometry import contours
-from stages.geometry.plane import CircularArc, Segment
+from stages.geometry.curves import contours
+from stages.geometry.curves.plane import CircularArc, Segment
 from stages.model.curves import CurveSpec
 from tests.near import assert_near
 

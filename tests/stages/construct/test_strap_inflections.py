@@ -8,8 +8,8 @@ import pytest
 
 from stages.construct import construct
 from stages.geometry.arrays import norm
-from stages.geometry.curves import bezier, blossom
-from stages.geometry.development import develop
+from stages.geometry.curves.curves import bezier, blossom
+from stages.geometry.flat.development import develop
 from stages.model.tolerances import Tolerances
 from tests import oracles
 from tests.inflections import CIRCLE, FREE, Along, control_points, frame, length, rising

@@ -15,10 +15,10 @@ from stages.construct.curves import Chain
 from stages.construct.straprulings import senses
 from stages.construct.straps import strap
 from stages.geometry.arrays import norm
-from stages.geometry.curves import Bezier, Circular
-from stages.geometry.development import develop
-from stages.geometry.envelope import Rectifying
-from stages.geometry.ruled import frames
+from stages.geometry.curves.curves import Bezier, Circular
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.envelope import Rectifying
+from stages.geometry.ruled.ruled import frames
 from stages.model.envelopes import Strap
 from stages.model.tolerances import Tolerances
 from tests import oracles

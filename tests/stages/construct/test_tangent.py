@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from mpmath import mpf
 
-from stages.geometry import ruled
 from stages.geometry.arrays import EPS, norm
-from stages.geometry.ruled import frames, regression
+from stages.geometry.ruled import ruled
+from stages.geometry.ruled.ruled import frames, regression
 from tests import oracles
 from tests.near import assert_near, assert_relative
 from tests.parts import Table, passage, patches, troubles

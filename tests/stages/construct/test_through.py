@@ -9,7 +9,7 @@ from msgspec import convert
 from stages.construct import construct
 from stages.construct.quintic import vector
 from stages.geometry.arrays import norm
-from stages.geometry.curves import Bezier
+from stages.geometry.curves.curves import Bezier
 from stages.model.quinticstrip import Station
 from stages.model.tolerances import Tolerances
 from tests.near import assert_near

@@ -12,8 +12,8 @@ from mpmath import findroot, mp, mpf
 
 from stages.construct import construct
 from stages.geometry.arrays import EPS, norm
-from stages.geometry.curves import Bezier
-from stages.geometry.ruled import at
+from stages.geometry.curves.curves import Bezier
+from stages.geometry.ruled.ruled import at
 from tests import oracles
 from tests.near import assert_near, assert_relative
 from tests.parts import DEFAULT, Passage, Table, part, passage, patches, troubles

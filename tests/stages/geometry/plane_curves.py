@@ -7,8 +7,8 @@ import numpy as np
 from hypothesis import strategies as st
 from scipy.spatial import KDTree
 
-from stages.geometry.arcpath import ArcPath, chords, sweeps
 from stages.geometry.arrays import Array, Points2, Values
+from stages.geometry.paths.arcpath import ArcPath, chords, sweeps
 
 TAU = 2.0 * np.pi
 

@@ -19,11 +19,11 @@ from stages.geometry.arrays import (
     similarities,
     unit,
 )
-from stages.geometry.curves import Bezier, rational
-from stages.geometry.development import develop
-from stages.geometry.plane import CircularArc, Segment
-from stages.geometry.rigid import Rigid2
-from stages.geometry.ruled import frames
+from stages.geometry.curves.curves import Bezier, rational
+from stages.geometry.curves.plane import CircularArc, Segment
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.ruled import frames
 from tests.near import assert_near
 from tests.parts import EXAMPLE_1, MITRED_CYLINDER, RIGHT_FRUSTUM, patches
 

@@ -2,7 +2,7 @@
 
 import math
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.sheet import Placement, Sheet, SheetLayout
 from stages.model.used import used_length_mm
 from tests.near import assert_near

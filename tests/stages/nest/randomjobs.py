@@ -15,8 +15,8 @@ import numpy as np
 from numpy.random import Generator, default_rng
 
 from pipeline.certified import certified_files
-from stages.geometry.arcpath import ArcPath, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, transform
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Finding, Outcome

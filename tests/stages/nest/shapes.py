@@ -4,7 +4,7 @@ from math import radians, tan
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, area, backwards
+from stages.geometry.paths.arcpath import ArcPath, area, backwards
 from stages.model.pattern import Contour, FlatPattern
 
 Corners = list[tuple[float, float]]

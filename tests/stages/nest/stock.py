@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.sheet import Sheet, Zone
 from tests.stages.nest.shapes import Corners
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Point, Polygon, affinity
 
-from stages.geometry.arcpath import area, backwards
+from stages.geometry.paths.arcpath import area, backwards
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.beds import bed, beds, roll_length
 from stages.nest.blank import SLACK_MM, Bed

@@ -6,8 +6,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import Polygon, contains_properly
 
-from stages.geometry.arcpath import ArcPath, polygon, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, polygon, transform
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.beds import bed
 from stages.nest.blank import as_blank, fits, turned

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import pytest
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout
 from stages.model.tolerances import Tolerances
 from stages.nest import nest
 from stages.nest.commonlines import aligned, common_line
 from stages.nest.finish import finished
-from stages.nest.legal import certify, passed
+from stages.nest.legal.certify import certify, passed
 from tests.near import assert_near
 from tests.stages.nest.shapes import contour, disc, pattern, rectangle, ring
 
@@ -169,8 +169,8 @@ def test_the_quick_way_and_the_strict_one_agree_on_a_grid(monkeypatch: pytest.Mo
 
 
 def test_where_the_certifier_refuses_the_outcome_nothing_is_moved(monkeypatch: pytest.MonkeyPatch) -> None:
-    from stages.nest.legal_gaps import between_copies
-    from stages.nest.legal_laid import fatal
+    from stages.nest.legal.gaps import between_copies
+    from stages.nest.legal.laid import fatal
 
     def refusing(*given: object) -> object:
         return between_copies(*given)._replace(findings=(fatal("gap", "planted"),))  # type: ignore[arg-type]

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Polygon
 
-from stages.geometry.arcpath import polygon, transform
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.paths.arcpath import polygon, transform
 from stages.model.sheet import NestOptions, Sheet
 from stages.nest.beds import bed
 from stages.nest.blank import Placed, as_blank, turned

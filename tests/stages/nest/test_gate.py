@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath, area, backwards
+from stages.geometry.paths.arcpath import ArcPath, area, backwards
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.report import Outcome
 from stages.model.sheet import Nesting, NestOptions, Sheet, Zone

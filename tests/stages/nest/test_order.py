@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, backwards, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, backwards, transform
 from stages.model.pattern import FlatPattern, Mark
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.model.strokes import strokes

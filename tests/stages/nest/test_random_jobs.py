@@ -6,12 +6,12 @@ from numpy.random import default_rng
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from stages.geometry.arcpath import ArcPath, polygon, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, polygon, transform
 from stages.model.sheet import Nesting, NestOptions, Placement, SheetLayout
-from stages.nest.legal import certify, passed
-from stages.nest.legal_ground import accepts
-from stages.nest.legal_laid import paths_of
+from stages.nest.legal.certify import certify, passed
+from stages.nest.legal.ground import accepts
+from stages.nest.legal.laid import paths_of
 from tests.stages.nest.randomjobs import FAILURES, REFUSALS, RandomJob, nested, random_job, read_back
 
 COUNT = 30

@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Polygon
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout
 from stages.nest import search
 from stages.nest.blank import COARSEST_MM, MITRE_LIMIT, polygon_at
 from stages.nest.layout import as_nesting
-from stages.nest.legal import certify, passed
+from stages.nest.legal.certify import certify, passed
 from stages.nest.lots import task_of
 from stages.nest.search import MANY, Engine, Posed, plan_of, pose, search_plans, spans_of
 from stages.nest.sheets import Plan, Task, first_plans

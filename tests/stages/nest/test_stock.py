@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import Polygon
 
-from stages.geometry.arcpath import bounds, polygon, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import bounds, polygon, transform
 from stages.model.pattern import FlatPattern
 from stages.model.report import Outcome
 from stages.model.sheet import Nesting, NestOptions, Placement, Rectangle, Sheet, SheetLayout

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.geometry.arrays import Array
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development, FlatPiece
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development, FlatPiece
+from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.surface import RuledSurface, whole_spans
 from stages.model.tolerances import Tolerances
 from stages.unroll.distortion import Distortion, measure

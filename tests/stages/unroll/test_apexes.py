@@ -5,9 +5,9 @@ import pytest
 
 from stages.construct import construct
 from stages.geometry.arrays import Values, dot, unit
-from stages.geometry.offset import normals, offset, tapered
-from stages.geometry.quadrature import integral
-from stages.geometry.ruled import RuledPatch, across, frames, warp
+from stages.geometry.numeric.quadrature import integral
+from stages.geometry.ruled.offset import normals, offset, tapered
+from stages.geometry.ruled.ruled import RuledPatch, across, frames, warp
 from stages.model.face import Face
 from stages.model.kfactor import KFactor, Rule, k_at
 from stages.model.material import Material

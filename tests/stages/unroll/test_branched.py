@@ -13,9 +13,9 @@ from msgspec.structs import replace as with_fields
 from OCP.TopoDS import TopoDS_Shape
 from scipy.integrate import quad
 
-from stages.construct.faces import face_blanks, face_surface
+from stages.construct.faces.surface import face_blanks, face_surface
 from stages.geometry.arrays import Array, norm, unit
-from stages.geometry.contours import area
+from stages.geometry.curves.contours import area
 from stages.model.cadface import CadBody
 from stages.model.kfactor import KFactor
 from stages.model.material import Material, Part

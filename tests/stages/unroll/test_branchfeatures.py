@@ -13,12 +13,12 @@ import pytest
 from msgspec.structs import replace as with_fields
 from OCP.TopoDS import TopoDS_Shape
 
-from stages.construct.faces import face_blanks, face_surface
-from stages.construct.faces_based import Based, based
-from stages.construct.faces_features import on_faces
+from stages.construct.faces.based import Based, based
+from stages.construct.faces.features import on_faces
+from stages.construct.faces.surface import face_blanks, face_surface
 from stages.construct.features import Placement
-from stages.geometry import contours
 from stages.geometry.arrays import Points2, norm
+from stages.geometry.curves import contours
 from stages.model.cadface import CadBody
 from stages.model.curves import CurveSpec
 from stages.model.features import CircleHole, CurveHole, CurveMark, DrilledHole, Feature, NotchSpec, PointMark, TextMark

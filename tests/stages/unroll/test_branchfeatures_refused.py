@@ -6,7 +6,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from stages.construct.faces import face_surface
+from stages.construct.faces.surface import face_surface
 from stages.geometry.arrays import Array, norm
 from stages.model.curves import CurveSpec
 from stages.model.features import CircleHole, CurveHole, CurveMark, DrilledHole, NotchSpec, PointMark

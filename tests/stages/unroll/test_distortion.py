@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
 from stages.geometry.arrays import EPS, Array, dot, norm
-from stages.geometry.curves import bezier
-from stages.geometry.development import develop
-from stages.geometry.ruled import RuledPatch, between, end_normals, frames
+from stages.geometry.curves.curves import bezier
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.ruled import RuledPatch, between, end_normals, frames
 from tests.near import assert_near
 from tests.parts import (
     AUMANN_CUBIC,

@@ -7,9 +7,10 @@ from math import ceil, hypot, pi
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath, ruled
-from stages.geometry.curves import Circular, Curve
-from stages.geometry.development import develop
+from stages.geometry.curves.curves import Circular, Curve
+from stages.geometry.flat.development import develop
+from stages.geometry.paths import arcpath
+from stages.geometry.ruled import ruled
 from stages.model.surface import Certificate, RuledSurface, whole_spans
 from stages.model.tolerances import Tolerances
 from stages.unroll import unroll

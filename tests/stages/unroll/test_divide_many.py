@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.development import develop
+from stages.geometry.flat.development import develop
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.tolerances import Tolerances
 from stages.unroll import divide
 from stages.unroll.divide import Strip, strip_of

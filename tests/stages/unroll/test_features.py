@@ -3,9 +3,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath, contours
 from stages.geometry.arrays import norm, unit
-from stages.geometry.strip import Strip, jet
+from stages.geometry.curves import contours
+from stages.geometry.paths import arcpath
+from stages.geometry.ruled.strip import Strip, jet
 from stages.model.features import CircleHole, CurveMark, NotchSpec
 from stages.model.material import Material, Part
 from stages.model.process import Process
@@ -15,7 +16,7 @@ from stages.verify import verify
 from tests import oracles
 from tests.near import assert_near, assert_relative
 from tests.parts import QUINTIC_TANGENT, RIGHT_FRUSTUM, Passage, Table, construct, passage, patches, read
-from tests.stages.geometry.test_drill import HALF_TUBE
+from tests.stages.geometry.ruled.test_drill import HALF_TUBE
 
 SIZE = 750.0
 PLATE: Table = {"kind": "flat", "outline": {"polyline": [[0, 0], [100, 0], [100, 60], [0, 60], [0, 0]]}}

@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import pytest
 
-from stages.geometry.development import develop
-from stages.geometry.ruled import part as stretch_of
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.ruled import part as stretch_of
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline, unroll
@@ -14,7 +14,7 @@ from stages.unroll.divide import blanks
 from stages.unroll.features import on_strip
 from stages.verify import verify
 from tests.parts import construct, part, passage
-from tests.stages.geometry.test_drill import HALF_TUBE
+from tests.stages.geometry.ruled.test_drill import HALF_TUBE
 from tests.stages.unroll.test_divide import WAVY
 from tests.stages.unroll.test_features import circle
 

@@ -14,9 +14,9 @@ import pytest
 from mpmath import mp, mpf
 
 from stages.geometry.arrays import Array
-from stages.geometry.curves import Circular
-from stages.geometry.development import develop
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Circular
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.unroll.nodes import at_nodes
 from stages.unroll.sides import flat_area, flat_edges, surface_figures
 from tests import oracles

@@ -8,8 +8,8 @@ import pytest
 from stages.construct import construct
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Points2, Values, cross2, norm
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development, FlatPiece
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development, FlatPiece
 from stages.model.face import Face
 from stages.model.forming import BendSpec
 from stages.model.kfactor import KFactor

@@ -3,7 +3,7 @@
 import pytest
 
 from stages.construct import construct
-from stages.geometry.development import develop
+from stages.geometry.flat.development import develop
 from stages.model.forming import BendSpec
 from stages.model.material import Material
 from stages.model.scalars import Angle

@@ -5,8 +5,8 @@ from math import pi, tan
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.pathedges import edges_of
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.edges import edges_of
 from stages.model.pattern import Contour
 from stages.unroll import limits
 from stages.unroll.limits import overlap

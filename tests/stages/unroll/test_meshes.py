@@ -7,12 +7,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from stages.construct.meshfeatures import placed_on_mesh
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshflat import flattened
-from stages.geometry.meshnearest import at
-from stages.geometry.meshtopology import boundary_loops, edges_of
-from stages.geometry.plane import CircularArc, Segment
+from stages.construct.meshes.features import placed_on_mesh
+from stages.geometry.curves.plane import CircularArc, Segment
+from stages.geometry.mesh.flat import flattened
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.nearest import at
+from stages.geometry.mesh.topology import boundary_loops, edges_of
 from stages.model.material import Material, Part
 from stages.model.meshes import MeshFile
 from stages.model.part import PartSpec

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshflat import flattened
-from stages.geometry.meshtopology import boundary_loops, edges_of
+from stages.geometry.mesh.flat import flattened
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import boundary_loops, edges_of
 from stages.model.face import Face
 from stages.model.kfactor import KFactor, Rule, k_at
 from stages.model.material import Material, Part

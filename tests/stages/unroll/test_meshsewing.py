@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stages.construct import construct
-from stages.geometry import contours
+from stages.geometry.curves import contours
 from stages.model.scalars import Length
 from stages.model.surface import Certificate, MeshSurface
 from stages.model.tolerances import Tolerances

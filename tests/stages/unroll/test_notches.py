@@ -3,10 +3,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath, contours
+from stages.geometry.curves import contours
+from stages.geometry.paths import arcpath
 from tests.near import assert_near, assert_relative
 from tests.parts import QUINTIC_TANGENT, RIGHT_FRUSTUM, Passage, Table, passage
-from tests.stages.geometry.test_drill import HALF_TUBE
+from tests.stages.geometry.ruled.test_drill import HALF_TUBE
 from tests.stages.unroll.test_features import PLATE, rows
 
 AREA = 100.0 * 40.0 * pi

@@ -5,8 +5,9 @@ from math import pi
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath, contours
-from stages.geometry.plane import CircularArc, Segment
+from stages.geometry.curves import contours
+from stages.geometry.curves.plane import CircularArc, Segment
+from stages.geometry.paths import arcpath
 from stages.model.pattern import FlatPattern
 from tests.near import assert_near, assert_relative
 from tests.parts import Passage, Table, passage, read

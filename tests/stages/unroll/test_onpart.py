@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, length
-from stages.geometry.plane import CircularArc, Segment
+from stages.geometry.curves.plane import CircularArc, Segment
+from stages.geometry.paths.arcpath import ArcPath, length
 from stages.model.pattern import Contour, Mark
 from stages.unroll.onpart import CLIP_MM, left_off, on_part
 from stages.unroll.outline import contour

@@ -6,12 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath, contours
 from stages.geometry.arrays import norm
-from stages.geometry.development import develop
-from stages.geometry.flatmap import DevelopedEdge, DevelopedRuling, Development
-from stages.geometry.plane import Segment
-from stages.geometry.relaxed import relaxed
+from stages.geometry.curves import contours
+from stages.geometry.curves.plane import Segment
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import DevelopedEdge, DevelopedRuling, Development
+from stages.geometry.flat.relaxed import relaxed
+from stages.geometry.paths import arcpath
 from stages.unroll import outline
 from tests.near import assert_near, assert_relative
 from tests.parts import CONE_STRIP, QUINTIC_TANGENT, patches

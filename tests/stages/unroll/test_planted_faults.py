@@ -4,11 +4,12 @@ from math import degrees, sqrt
 
 import pytest
 
-from stages.geometry import development, quadrature
 from stages.geometry.arrays import Array
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development
-from stages.geometry.quadrature import beginnings
+from stages.geometry.flat import development
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.numeric import quadrature
+from stages.geometry.numeric.quadrature import beginnings
 from tests.near import assert_near
 from tests.parts import EXAMPLE_1, QUINTIC_TANGENT, patches
 from tests.rewritten import in_pieces

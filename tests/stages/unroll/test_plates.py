@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import Points2, Values
-from stages.geometry.plane import CircularArc, PlaneCurve, Segment
+from stages.geometry.curves.plane import CircularArc, PlaneCurve, Segment
 from stages.model.surface import Plate
 from stages.unroll import outline, plates
 from tests.near import assert_near, assert_relative

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from stages.geometry.plane import Segment
+from stages.geometry.curves.plane import Segment
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding
 from stages.model.sewing import SeamSpec
 from stages.unroll.seams import Seams, seams
 from tests.near import assert_near
 from tests.parts import Table, passage, read
-from tests.stages.geometry.test_drill import HALF_TUBE
+from tests.stages.geometry.ruled.test_drill import HALF_TUBE
 
 BOX: Table = {"kind": "flat", "outline": {"polyline": [[0, 0], [100, 0], [100, 40], [0, 40], [0, 0]]}}
 STRETCH: Table = {"edge": "outline"}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stages.construct import construct
-from stages.geometry.development import develop
+from stages.geometry.flat.development import develop
 from stages.model.face import Face
 from stages.model.kfactor import KFactor
 from stages.model.material import Material

@@ -5,9 +5,10 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath, contours
-from stages.geometry.allowance import Widened, widened
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves import contours
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.allowance import Widened, widened
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
 from stages.unroll import outline

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import Array
-from stages.geometry.development import develop
-from stages.geometry.flatmap import Development
-from stages.geometry.relaxed import relaxed
-from stages.geometry.relaxedmap import RelaxedMap
-from stages.geometry.relaxedmap import principal as of_displacement
+from stages.geometry.flat.development import develop
+from stages.geometry.flat.flatmap import Development
+from stages.geometry.flat.relaxed import relaxed
+from stages.geometry.flat.relaxedmap import RelaxedMap
+from stages.geometry.flat.relaxedmap import principal as of_displacement
 from stages.model.surface import RuledSurface, whole_spans
 from stages.model.tolerances import Class, Tolerances, class_by_strain
 from stages.unroll import strain

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stages.geometry.curves import Circular, bezier, exactly
-from stages.geometry.development import develop
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Circular, bezier, exactly
+from stages.geometry.flat.development import develop
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.surface import RuledSurface, whole_spans
 from stages.unroll.tangencies import tangency_marks
 from tests.near import assert_near

@@ -5,7 +5,7 @@ from math import hypot, pi
 import numpy as np
 import pytest
 
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.plane import CircularArc
 from stages.model.pattern import Contour, Text
 from stages.unroll.outline import contour
 from stages.unroll.texts import text_box, text_findings

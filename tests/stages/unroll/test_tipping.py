@@ -2,14 +2,14 @@
 
 import pytest
 
-from stages.geometry.arcpath import transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import transform
 from stages.model.helps import Tabs
 from stages.model.pattern import Contour
 from stages.model.process import Process
 from stages.unroll.tipping import sides, tipping
 from tests.near import assert_near
-from tests.stages.geometry.test_beside import CIRCLE, polygon
+from tests.stages.geometry.paths.test_beside import CIRCLE, polygon
 
 
 def bar(width: float, height: float) -> Contour:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import Array, Points2, Values
-from stages.geometry.development import develop
-from stages.geometry.plane import CircularArc, Segment, stretch
+from stages.geometry.curves.plane import CircularArc, Segment, stretch
+from stages.geometry.flat.development import develop
 from stages.model.material import Material
 from stages.model.pattern import FlatPattern
 from stages.model.report import StageReport

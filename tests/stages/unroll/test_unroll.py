@@ -5,9 +5,9 @@ from math import cos, hypot, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from stages.geometry import arcpath
 from stages.geometry.arrays import norm
-from stages.geometry.contours import area, length
+from stages.geometry.curves.contours import area, length
+from stages.geometry.paths import arcpath
 from stages.model.material import Material
 from stages.model.tolerances import Tolerances
 from tests.near import assert_near, assert_relative

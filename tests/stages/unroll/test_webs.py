@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.pattern import Contour
 from stages.model.process import Process
 from stages.unroll.webs import judged
 from tests.near import assert_near
-from tests.stages.geometry.test_beside import notched
-from tests.stages.geometry.test_bridges import BONE, WAISTED
+from tests.stages.geometry.paths.test_beside import notched
+from tests.stages.geometry.paths.test_bridges import BONE, WAISTED
 from tests.stages.write.patterns import contour, hole, polygon_edges
 
 

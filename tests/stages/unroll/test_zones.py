@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.construct.meshbends import bent_sheet
+from stages.construct.meshes.bends import bent_sheet
 from stages.model.forming import BendSpec
 from stages.model.kfactor import KFactor
 from stages.model.material import Material

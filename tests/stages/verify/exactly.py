@@ -4,8 +4,8 @@ from fractions import Fraction
 from itertools import pairwise
 from math import atan2, isqrt, pi
 
-from stages.geometry.curves import Bezier, RationalBezier, homogeneous
-from stages.geometry.ruled import RuledPatch
+from stages.geometry.curves.curves import Bezier, RationalBezier, homogeneous
+from stages.geometry.ruled.ruled import RuledPatch
 
 Row = list[Fraction]
 

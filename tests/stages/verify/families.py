@@ -6,8 +6,8 @@ from fractions import Fraction
 from itertools import pairwise
 from math import hypot, sqrt
 
-from stages.geometry.curves import Bezier, RationalBezier, bezier, elevated, rational
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Bezier, RationalBezier, bezier, elevated, rational
+from stages.geometry.ruled.ruled import RuledPatch, between
 from tests.parts import Table, patches
 
 Rows = list[list[Fraction]]

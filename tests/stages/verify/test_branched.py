@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.construct.faces import face_blanks, face_surface
-from stages.geometry.curves import bezier, exactly
-from stages.geometry.ruled import between
+from stages.construct.faces.surface import face_blanks, face_surface
+from stages.geometry.curves.curves import bezier, exactly
+from stages.geometry.ruled.ruled import between
 from stages.model.gathered import Rule, gathered, told
 from stages.model.report import Evidence, Finding, Metric
 from stages.model.surface import BranchedSurface

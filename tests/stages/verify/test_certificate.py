@@ -6,8 +6,8 @@ from math import atan, cos, degrees, inf, pi, sqrt
 import pytest
 
 from stages.geometry.arrays import EPS
-from stages.geometry.curves import Bezier, bezier, rational
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Bezier, bezier, rational
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.verify import sampled
 from stages.verify.certificate import certify
 from stages.verify.plucker import ingredients

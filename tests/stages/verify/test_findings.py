@@ -6,8 +6,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from stages.geometry.curves import Circular
-from stages.geometry.ruled import between
+from stages.geometry.curves.curves import Circular
+from stages.geometry.ruled.ruled import between
 from stages.model.report import Metric
 from stages.model.surface import RuledSurface
 from stages.model.tolerances import Tolerances

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshtopology import boundary_loops, edges_of
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import boundary_loops, edges_of
 from stages.model.face import Face
 from stages.model.material import Material, Part
 from stages.model.meshes import MeshFile

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from stages.geometry.mesh import Mesh
-from stages.geometry.meshcurvature import defects
-from stages.geometry.meshfit import MOST_TRIANGLES
-from stages.geometry.meshflat import flattened
-from stages.geometry.meshlengths import chords
-from stages.geometry.meshtopology import edges_of
+from stages.geometry.mesh.curvature import defects
+from stages.geometry.mesh.fit import MOST_TRIANGLES
+from stages.geometry.mesh.flat import flattened
+from stages.geometry.mesh.lengths import chords
+from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.topology import edges_of
 from stages.model.material import Material
 from stages.model.surface import MeshSurface
 from stages.model.tolerances import Tolerances

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from stages.geometry.bernstein import Vector
-from stages.geometry.curves import bezier
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import bezier
+from stages.geometry.numeric.bernstein import Vector
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.verify.plucker import Factored, ingredients
 from tests.parts import EXAMPLE_1, patches
 from tests.stages.verify.exactly import cross, delta, inner, jet, normals

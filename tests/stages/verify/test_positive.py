@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stages.geometry.bernstein import Polynomial, add, from_bernstein, multiply
+from stages.geometry.numeric.bernstein import Polynomial, add, from_bernstein, multiply
 from stages.verify.positive import least_multiple, proved_positive, root_above
 
 ONE = Polynomial((1,))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from stages.geometry.arrays import EPS
-from stages.geometry.curves import Circular
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Circular
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.model.surface import RuledSurface, whole_spans
 from stages.verify import sampled
 from stages.verify.bending import Sharpest, sharpest

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import pytest
 
-from stages.geometry.curves import Curve, bezier, rational
-from stages.geometry.ruled import RuledPatch, between
+from stages.geometry.curves.curves import Curve, bezier, rational
+from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.verify.certificate import Certified, certify
 from tests.stages.verify.exactly import dot
 

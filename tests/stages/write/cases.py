@@ -9,7 +9,7 @@ import numpy as np
 from ezdxf.document import Drawing as Document
 from ezdxf.entities import DXFEntity
 
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.plane import CircularArc
 from stages.model.cutfile import CutFile, Flavour, Machine, Version
 from stages.model.pattern import FlatPattern
 from stages.write import judged, write

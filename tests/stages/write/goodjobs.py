@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.cutfile import PROFILES, Machine
 from stages.model.helps import Helps, Lead, Tabs
 from stages.model.pattern import FlatPattern

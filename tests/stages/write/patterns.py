@@ -4,10 +4,10 @@ from math import pi
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.biarc import trace
-from stages.geometry.plane import CircularArc, PlaneCurve, Segment
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.plane import CircularArc, PlaneCurve, Segment
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath
+from stages.geometry.paths.biarc import trace
 from stages.model.pattern import Contour, FlatPattern, Mark
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from tests.stages.geometry.plane_curves import SINE, TAU, Formula

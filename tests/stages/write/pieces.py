@@ -4,8 +4,8 @@ from math import pi
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import Machine, Style
 from stages.model.features import NotchKind
 from stages.model.pattern import Contour, FlatPattern, Mark, NotchPlace, Purpose, Text

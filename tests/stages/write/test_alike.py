@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, transform
 from stages.write.alike import SHARE, are_alike
 from tests.stages.write.patterns import plate, sector, strip
 

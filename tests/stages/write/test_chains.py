@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from stages.geometry.arcpath import ArcPath, area
+from stages.geometry.paths.arcpath import ArcPath, area
 from stages.write.chains import JOINT_MM, Entity, chained
 from tests.near import assert_near
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from shapely import LineString, Polygon
 
-from stages.geometry.arcpath import ArcPath, length, polygon
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, length, polygon
 from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern, Text
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout

@@ -13,8 +13,8 @@ from ezdxf.document import Drawing as Document
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, area, length, transform
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, area, length, transform
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout

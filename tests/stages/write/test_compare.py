@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from ezdxf.document import Drawing as Document
 
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import CutFile
 from stages.model.pattern import Contour
 from stages.model.report import StageReport

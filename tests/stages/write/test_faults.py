@@ -7,7 +7,7 @@ import ezdxf
 import pytest
 from ezdxf.document import Drawing as Document
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.pattern import Contour, FlatPattern
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.write import write

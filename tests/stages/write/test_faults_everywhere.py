@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, backwards, piece_count
-from stages.geometry.plane import CircularArc
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, backwards, piece_count
 from stages.model.cutfile import Layer, Lettering, Machine, Side
 from stages.model.pattern import FlatPattern, Text
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout

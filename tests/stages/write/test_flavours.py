@@ -14,8 +14,8 @@ from ezdxf.path import make_path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, area, length
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, area, length
 from stages.model.cutfile import CutFile, Flavour, Machine, Side, Version
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout

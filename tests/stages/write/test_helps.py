@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath, area, length
 from stages.geometry.arrays import Points2
-from stages.geometry.rigid import Rigid2, matrix
+from stages.geometry.curves.rigid import Rigid2, matrix
+from stages.geometry.paths.arcpath import ArcPath, area, length
 from stages.model.cutfile import Machine
 from stages.model.helps import Helps, StartRule, Tabs
 from stages.model.pattern import FlatPattern, Mark

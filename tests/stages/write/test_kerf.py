@@ -7,7 +7,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import area
+from stages.geometry.paths.arcpath import area
 from stages.model.cutfile import CutFile, Machine
 from stages.model.report import StageReport
 from stages.model.sheet import Nesting

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.geometry.arcpath import length
-from stages.geometry.clearance import pieces
-from stages.geometry.enclosed import inside
+from stages.geometry.paths.arcpath import length
+from stages.geometry.paths.clearance import pieces
+from stages.geometry.paths.enclosed import inside
 from stages.model.helps import Lead
 from stages.model.sheet import Nesting, Sheet
 from stages.write.chains import Entity

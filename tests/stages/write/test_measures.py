@@ -13,11 +13,11 @@ import pytest
 from ezdxf import bbox
 from shapely import LineString, dwithin, points, prepare
 
-from stages.geometry.arcpath import ArcPath, joint_turns, lengths, piece_count
 from stages.geometry.arrays import Points2
-from stages.geometry.biarc import LEAST_PIECE_MM
-from stages.geometry.plane import PlaneCurve
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.plane import PlaneCurve
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, joint_turns, lengths, piece_count
+from stages.geometry.paths.biarc import LEAST_PIECE_MM
 from stages.model.cutfile import Side
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout

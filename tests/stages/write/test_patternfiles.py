@@ -15,9 +15,9 @@ from ezdxf.document import Drawing as Document
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import area, length
 from stages.geometry.arrays import norm
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.paths.arcpath import area, length
 from stages.model.cutfile import FILE_NAMES, FilePer
 from stages.model.pattern import FlatPattern
 from stages.model.patternlayers import PATTERN_LAYERS, STANDARD, TURN

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, area, bounds, distances, length, piece_count, split
+from stages.geometry.paths.arcpath import ArcPath, area, bounds, distances, length, piece_count, split
 from stages.model.cutfile import PROFILES, Layer, Machine, Paper
 from stages.model.pattern import FlatPattern
 from stages.write.colours import BRIGHTEST_ON_PAPER, on_paper, rgb

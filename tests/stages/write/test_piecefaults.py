@@ -8,7 +8,7 @@ import pytest
 from ezdxf.document import Drawing as Document
 from ezdxf.entities import Point, Polyline
 
-from stages.geometry.plane import CircularArc
+from stages.geometry.curves.plane import CircularArc
 from stages.model.cutfile import CutFile
 from stages.write.patternfiles import judged_patterns
 from stages.write.piecedxf import pieces_text

@@ -13,7 +13,7 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.layouts.layout import Modelspace
 from ezdxf.lldxf.tagwriter import TagWriter
 
-from stages.geometry.arcpath import ArcPath, centres, chords, piece_count, radii, sweeps
+from stages.geometry.paths.arcpath import ArcPath, centres, chords, piece_count, radii, sweeps
 from stages.model.cutfile import Layer, Machine
 from stages.write.drawing import Drawing, Item, Label, flat_drawing
 from stages.write.dxf import dxf_text

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from stages.geometry.arcpath import area, bounds
+from stages.geometry.paths.arcpath import area, bounds
 from stages.model.cutfile import Machine
 from stages.model.sheet import Nesting, Rectangle
 from stages.write import write

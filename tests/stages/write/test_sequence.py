@@ -6,7 +6,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.write import write
 from stages.write.chains import Entity
 from stages.write.closing import Closed

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from stages.geometry.arcpath import bounds
+from stages.geometry.paths.arcpath import bounds
 from stages.model.cutfile import Machine
 from stages.write import write
 from stages.write.readback import read

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from stages.geometry.arcpath import ArcPath, area, bounds
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, area, bounds
 from stages.model.cutfile import Machine
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout, Zone
 from stages.write import judged, write

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, area, bounds, length, split
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths.arcpath import ArcPath, area, bounds, length, split
 from stages.model.cutfile import PROFILES, Layer, Machine
 from stages.model.pattern import FlatPattern, Mark
 from stages.model.sheet import Placement, Sheet, SheetLayout

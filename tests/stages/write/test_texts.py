@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern, Text
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout

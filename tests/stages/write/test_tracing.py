@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry.arcpath import ArcPath, area, length
 from stages.geometry.arrays import norm
-from stages.geometry.hausdorff import hausdorff
-from stages.geometry.plane import CircularArc
-from stages.geometry.sampling import resolved
+from stages.geometry.curves.plane import CircularArc
+from stages.geometry.flat.sampling import resolved
+from stages.geometry.paths.arcpath import ArcPath, area, length
+from stages.geometry.paths.hausdorff import hausdorff
 from stages.model.pattern import Contour
 from stages.write.tracing import CORNER_RAD, FINER, as_pattern, chorded_line, drill_of, traced, turn_places
 from tests.near import assert_near

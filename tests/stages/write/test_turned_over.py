@@ -2,7 +2,7 @@
 
 import pytest
 
-from stages.geometry.rigid import Rigid2
+from stages.geometry.curves.rigid import Rigid2
 from stages.model.cutfile import Machine
 from stages.model.sheet import Placement, Sheet, SheetLayout
 from stages.write.drawing import sheet_drawing

@@ -12,9 +12,9 @@ from ezdxf.entities import DXFEntity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.geometry import arcpath
-from stages.geometry.arcpath import ArcPath
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
+from stages.geometry.paths import arcpath
+from stages.geometry.paths.arcpath import ArcPath
 from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.report import StageReport

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from shapely import Polygon, affinity, transform
 
 from stages.geometry.arrays import EPS
-from stages.geometry.rigid import Rigid2, apply
+from stages.geometry.curves.rigid import Rigid2, apply
 from stages.nest.separation.laying import lay, turn_into
 from stages.nest.separation.problem import (
     QUARTERS,

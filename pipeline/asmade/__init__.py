@@ -1,0 +1,1 @@
+"""What was measured of made parts beside what the job asked for."""

@@ -1,0 +1,1 @@
+"""CAD files: read in a child process."""

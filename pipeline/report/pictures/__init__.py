@@ -1,0 +1,1 @@
+"""Pictures of parts and sheets as PNG."""

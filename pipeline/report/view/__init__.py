@@ -1,0 +1,1 @@
+"""What the page needs to draw parts and sheets."""

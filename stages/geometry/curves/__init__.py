@@ -1,0 +1,1 @@
+"""Curves in space and in the plane, and what is laid along them."""

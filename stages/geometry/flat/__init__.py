@@ -1,0 +1,1 @@
+"""Maps of ruled strips onto the plane, and curves carried through them."""

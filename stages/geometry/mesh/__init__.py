@@ -1,0 +1,1 @@
+"""Triangle meshes: what they stand for, and how they are laid into the plane."""

@@ -1,0 +1,1 @@
+"""Polynomials, series, quadrature, roots, fits and linear equations: numbers before any shape."""

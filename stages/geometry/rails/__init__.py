@@ -1,0 +1,1 @@
+"""Developable strips between two rails."""

@@ -1,0 +1,1 @@
+"""The certifier: one module a rule."""
