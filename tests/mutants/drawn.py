@@ -1,4 +1,4 @@
-"""The list of mutants: drawn once from all that there are, and found again where the program has moved since.
+"""Lists of mutants: each drawn once from all that there are, and found again where the program has moved since.
 
 As many of each package, and in a package of as many kinds as can be: drawn from all places alike, half of them would be
 numbers, and a third would lie in the geometry.
@@ -13,11 +13,10 @@ from random import Random
 from tests.mutants.operators import Change, changes
 
 ROOT = Path(__file__).parents[2]
-LIST = Path(__file__).parent / "list.json"
 PACKAGES = ("pipeline", "stages")
-SHARED = {"stages": "stages/model"}
+SHARED = {"stages": "stages/model", "pipeline/asmade": "pipeline", "pipeline/cad": "pipeline"}
 """Files beside the stages count as of the values that pass between them: they are the errors that do."""
-SEED, COUNT = 1, 60
+COUNT = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +31,11 @@ class Mutant:
     before: str
     after: str
     text: str
+
+
+def list_of(seed: int) -> Path:
+    """Return where the list of a seed is kept."""
+    return Path(__file__).with_name(f"seed-{seed}.json")
 
 
 def package(file: str) -> str:
