@@ -4,8 +4,11 @@
 
 Linear algebra runs on one thread unless the environment says otherwise: the matrices are small, more threads wait for
 each other, and the last bits would depend on their number.
+
+The collector is not asked at the end: it would look through all that was loaded, which takes a tenth of a small job.
 """
 
+import gc
 import os
 import sys
 
@@ -23,7 +26,10 @@ def main() -> None:
         return
     from pipeline.cli import main as command_line
 
-    command_line()
+    try:
+        command_line()
+    finally:
+        gc.freeze()
 
 
 if __name__ == "__main__":

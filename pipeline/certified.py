@@ -7,6 +7,7 @@ nest, by the certifier that judged the layout.
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from pipeline.inturn import Each, in_turn
 from stages.geometry.paths.arcpath import transform
@@ -14,13 +15,15 @@ from stages.model.cutfile import CutFile, Machine
 from stages.model.pattern import FlatPattern
 from stages.model.report import Finding, Metric, Outcome
 from stages.model.sheet import Nesting, NestOptions, SheetLayout
-from stages.nest.legal.files import ReadSheet, certify_contours
 from stages.write.bridged import bridged
 from stages.write.chains import Entity
 from stages.write.closing import closed_again
 from stages.write.kerf import beam_patterns
 from stages.write.readback import read
 from stages.write.sheets import seen, windows
+
+if TYPE_CHECKING:
+    from stages.nest.legal.files import ReadSheet
 
 DEFAULT = Machine()
 DRAWING = re.compile(r"cut/.*\.dxf")
@@ -58,6 +61,8 @@ def certified_files(
     Where each part has a file of its own, what that holds is laid on the sheets as the parts are.  Contours that are
     offset by half a kerf are certified as they are, with gaps that are as much less.
     """
+    from stages.nest.legal.files import certify_contours
+
     nesting, options = _offset(machine.helps.offset_mm, nesting, options)
     patterns, _ = beam_patterns(patterns, machine)
     texts = {file.path: file.text for file in files if DRAWING.fullmatch(file.path)}
@@ -114,8 +119,10 @@ def _of_sheets(
     return [tuple(seen(back[path], place)) for path, place in zip(paths, places, strict=True)]
 
 
-def read_sheet(layout: SheetLayout, entities: Sequence[Entity], options: NestOptions) -> ReadSheet:
+def read_sheet(layout: SheetLayout, entities: Sequence[Entity], options: NestOptions) -> "ReadSheet":
     """Return the contours that will be cut, of what a file holds; those that share cuts put together again."""
+    from stages.nest.legal.files import ReadSheet
+
     by_layer = {
         layer: [one.path for one in entities if one.layer == layer and one.closed and one.path is not None]
         for layer in ("CUT_OUTER", "CUT_INNER")

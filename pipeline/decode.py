@@ -18,7 +18,7 @@ from msgspec import inspect
 
 from pipeline.paths import Path, parsed
 from pipeline.standins import stand_in
-from pipeline.typenames import fixed_name, quoted, type_name
+from pipeline.typenames import fixed_name, needed, quoted, type_name
 from pipeline.units import UnreadableError, coordinate_of, describe, quantity
 from stages.model.curves import Table
 from stages.model.scalars import Coordinate, Number
@@ -137,7 +137,7 @@ def _union(walk: Walk, sort: inspect.UnionType, raw: object, path: Path) -> obje
     fitting = [item for item in members if _has_shape(item, raw)]
     if len(members) == 1 or fitting:
         return _value(walk, (fitting or members)[0], raw, path)
-    return walk.wrong(sort, path, f"{describe(raw)} does not belong here", f"{type_name(sort)} is needed")
+    return walk.wrong(sort, path, f"{describe(raw)} does not belong here", needed(sort, path))
 
 
 def _tagged_members(sort: inspect.Type) -> list[inspect.StructType]:
@@ -178,10 +178,11 @@ def _struct(walk: Walk, sort: inspect.StructType, raw: object, path: Path) -> ob
         walk.complain((*path, key), "the key is there twice", "leave one of them out", "key")
     values: dict[str, object] = {}
     for key, entry in known.items():
+        at = (*path, key)
         if key in raw:
-            values[entry.name] = _value(walk, entry.type, raw[key], (*path, key))
+            values[entry.name] = _value(walk, entry.type, raw[key], at)
         elif entry.required:
-            values[entry.name] = walk.wrong(entry.type, (*path, key), "missing", f"{type_name(entry.type)} is needed")
+            values[entry.name] = walk.wrong(entry.type, at, "missing", needed(entry.type, at))
     table = sort.cls(**values)
     return _checked(walk, table, raw, path, before) if isinstance(table, Table) else table
 
@@ -217,7 +218,7 @@ def _array(walk: Walk, sort: inspect.VarTupleType, raw: object, path: Path) -> o
         value = _value(walk, sort.item_type, raw, path)
         return value.items if isinstance(value, Several) else (value,)
     if not isinstance(raw, list | tuple):
-        return walk.wrong(sort, path, f"{describe(raw)} where an array belongs", f"{type_name(sort)} is needed")
+        return walk.wrong(sort, path, f"{describe(raw)} where an array belongs", needed(sort, path))
     least, most = sort.min_length or 0, sort.max_length
     if len(raw) < least or (most is not None and len(raw) > most):
         return walk.wrong(sort, path, describe(raw), f"{type_name(sort)} is needed")
@@ -291,8 +292,7 @@ def suggestion(read: object, allowed: Sequence[object]) -> str:
     near = get_close_matches(str(read)[:80], [str(word) for word in allowed], 1) if isinstance(read, str) else []
     if near:
         return f'did you mean "{near[0]}"?'
-    shown = ", ".join(quoted(allowed))
-    return f"one of {shown}" if len(allowed) > 1 else f"only {shown}"
+    return f"{'one of' if len(allowed) > 1 else 'only'} {', '.join(quoted(allowed))}"
 
 
 def canonical(table: msgspec.Struct) -> bytes:

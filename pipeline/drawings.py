@@ -8,7 +8,7 @@ as its first entity in the file does.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise, product
+from itertools import combinations, pairwise, product
 from math import dist, isclose, tau
 
 from ezdxf.entities.arc import Arc
@@ -28,7 +28,9 @@ from stages.model.scalars import Angle, Coordinate, Direction, Number
 XYZ = tuple[float, float, float]
 
 GAP_MM = 0.01
-"""The default of `tolerance.join`: drawings made by hand in CAD meet far better, traced ones far worse."""
+"""Ends nearer than this are one point, whatever `tolerance.join` says: drawings made in CAD meet far better, traced
+ones far worse, and an outline put together over a wider gap would be refused once it is laid flat, as its edges must
+meet within a share of `tolerance.chord`.  Where the ends of a drawing are further apart, how far is said instead."""
 READ = "LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE and POLYLINE are read"
 FULL_TURN = 360.0
 
@@ -219,6 +221,19 @@ def _spline(curve: BSpline, unit: str, entity: DXFEntity) -> Piece:
         raise UnreadableError(f"{_called(entity)}: {trouble.message}", trouble.hint)
     start, end = (_mm(curve.point(knot), unit) for knot in (knots[curve.degree], knots[-curve.degree - 1]))
     return Piece((CurveSpec(bspline=spec),), start, end, dist(start, end) <= GAP_MM)
+
+
+def least_gap(curves: Sequence[Piece]) -> float | None:
+    """Return how near ends of two curves come to each other, mm; None for closed ones, and for too many to be meant."""
+    open_ones = [curve for curve in curves if not curve.closed]
+    if len(open_ones) > MOST_COMPARED:
+        return None
+    pairs = (pair for a, b in combinations(open_ones, 2) for pair in product((a.start, a.end), (b.start, b.end)))
+    return min((dist(*pair) for pair in pairs), default=None)
+
+
+MOST_COMPARED = 50
+"""Open curves of a layer among which the nearest ends are looked for: some 5000 pairs."""
 
 
 def chains(parts: Sequence[Piece]) -> list[Piece]:

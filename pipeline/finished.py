@@ -151,23 +151,40 @@ def _patterns(report: ReportEntry, drawings: dict[str, bytes | None], folder: Pa
 def _recalled(
     patterns: "Sequence[FlatPattern]", paths: Mapping[str, str], drawings: Mapping[str, bytes | None], folder: Path
 ) -> "tuple[tuple[FlatPattern, ...], tuple[str, ...]]":
-    """Return the patterns with what their side files say, and the parts of which none does."""
-    from pipeline.recalled import recalled
+    """Return the patterns with what their side files say, and the parts of which none does.
+
+    Raises BadInputError for side files that their drawings contradict.
+    """
+    from pipeline.recalled import SideFileError, recalled
 
     found: list[FlatPattern] = []
     unknown: list[str] = []
+    problems: list[Problem] = []
     for pattern in patterns:
         path = paths[pattern.part]
-        made = recalled(pattern, _side(folder / path), drawings[path] or b"")
+        try:
+            made = recalled(pattern, _side(folder / path), drawings[path] or b"")
+        except SideFileError as error:
+            hint = "run the job again, or remove this file: then the part is cut as drawn"
+            problems.append(
+                Problem(f"contradicts its drawing: {error}", hint=hint, file=str(_side_file(folder / path)))
+            )
+            continue
         found.append(made or pattern)
         unknown += [] if made else [pattern.part]
+    if problems:
+        raise BadInputError(*problems)
     return tuple(found), tuple(unknown)
+
+
+def _side_file(drawing: Path) -> Path:
+    return drawing.with_suffix(".json")
 
 
 def _side(drawing: Path) -> bytes | None:
     """Return the side file of a drawing; None where it cannot be read."""
     try:
-        return drawing.with_suffix(".json").read_bytes()
+        return _side_file(drawing).read_bytes()
     except OSError:
         return None
 

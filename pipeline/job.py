@@ -104,7 +104,7 @@ def _job(read: ReadJob) -> Job:
         revision=tables.job.revision,
         units=tables.units,
         digest=_digest(read),
-        limits=limits_of(tables),
+        limits=limits_of(tables, read.tolerances),
         inputs=read.inputs,
         notes=(*read.notes, *material_notes, *process_notes, *stock.told, *told_of_helps),
         rates=rates_of(tables.process, tables.nest),

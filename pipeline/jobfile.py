@@ -186,6 +186,7 @@ class ReadJob:
     inputs: name and sha256 of the job file and of every drawing and mesh that it points at.
     meshes, faces: those of the parts that have them, by their numbers; touched: the meshes that else they point at.
     layout: file and bytes of where copies lie already, if the job says so.
+    tolerances: the keys of [tolerance] that the job gives itself, be it the default value.
     """
 
     tables: JobFile
@@ -196,6 +197,7 @@ class ReadJob:
     faces: Mapping[int, "CadSource"] = field(default_factory=dict)
     touched: Mapping[int, "Mapping[MeshNormals, MeshSource]"] = field(default_factory=dict)
     layout: tuple[FilePath, bytes] | None = None
+    tolerances: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +227,17 @@ def read(file: FilePath, settings: Iterable[str] = (), tell: Tell = silent, give
             raise
         raise BadInputError(*(_on_line(problem, str(file), given.line) for problem in error.problems)) from None
     laid = None if sources.layout is None else (file.parent / sources.layout[0], sources.layout[1])
-    return ReadJob(tables, file, tuple(sources.notes), inputs, sources.meshes, sources.faces, sources.touched, laid)
+    return ReadJob(
+        tables,
+        file,
+        tuple(sources.notes),
+        inputs,
+        sources.meshes,
+        sources.faces,
+        sources.touched,
+        laid,
+        sources.tolerances,
+    )
 
 
 def _on_line(problem: Problem, file: str, line: int) -> Problem:
@@ -247,7 +259,7 @@ def read_as(
     refuse_huge(raw, file)
     set_paths = override(raw, settings)
     walk = Walk(unit=_unit(raw))
-    sources = Sources(Reach(file.parent, given.allow, tell, given.seen), walk.unit)
+    sources = Sources(Reach(file.parent, given.allow, tell, given.seen), walk.unit, tolerances=_tolerances(raw))
     walk.resolve = sources.resolve
     try:
         tables = decode(walk, wanted, raw)
@@ -262,6 +274,12 @@ def _more(walk: Walk, file: FilePath) -> Iterator[Problem]:
     """Yield that there may be more problems, where so many were found that looking for them ended."""
     if len(walk.complaints) >= MOST_COMPLAINTS:
         yield Problem(f"there may be more: only the first {MOST_COMPLAINTS} problems are told", file=str(file))
+
+
+def _tolerances(raw: dict[str, object]) -> frozenset[str]:
+    """Return the keys of the tolerances that the file gives."""
+    table = raw.get("tolerance")
+    return frozenset(table) if isinstance(table, dict) else frozenset()
 
 
 def _unit(raw: dict[str, object]) -> str:

@@ -64,7 +64,7 @@ def look_up(name: str) -> tuple[MaterialRow | None, tuple[str, ...]]:
     if row is not None:
         return row, ()
     near = get_close_matches(_plain(name), known, 1)
-    advice = f'; did you mean "{known[near[0]].name}"?' if near else ""
+    advice = f'; did you mean "{known[near[0]].name}"?' if near else "; planish materials lists those that it has"
     return None, (f'material "{name}" is not in the table: only the values given count{advice}',)
 
 

@@ -19,7 +19,7 @@ from pipeline.sidefiles import side_files
 from pipeline.store import REPORT
 
 if TYPE_CHECKING:
-    from stages.geometry.mesh.flat import MeshMap
+    from stages.geometry.mesh.meshmap import MeshMap
 
 SLOW_FORMATS = frozenset({"png", "traveller"})
 """Left out after an interruption: they take 0.1 to 0.3 s a part, the rest together a second for dozens of parts."""

@@ -7,8 +7,8 @@ as from one process; only seconds differ.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib import import_module
 
+from pipeline.eager import load_parts
 from pipeline.forked import EndedError, forked, forks
 from pipeline.job import Job
 from pipeline.run import PartRun, Runner, Spread, Step, one_after_the_other, run_set
@@ -37,7 +37,7 @@ def spread_over(workers: int) -> Spread:
         if min(workers, len(job.parts)) == 1 or not forks():
             yield from one_after_the_other(runner, job)
             return
-        load()
+        load_parts()
         try:
             for ran in forked(lambda number: run_number(job, number), len(job.parts), workers):
                 yield _told(runner, ran)
@@ -46,16 +46,6 @@ def spread_over(workers: int) -> Spread:
             raise RuntimeError(f"the process that ran part '{name}' has ended: {error.said}") from None
 
     return spread
-
-
-def load() -> None:
-    """Load what parts go through, so that it is there in every process that is forked from this one."""
-    for name in STAGES:
-        import_module(name)
-
-
-STAGES = ("stages.construct", "stages.verify", "stages.unroll", "scipy.interpolate", "scipy.optimize")
-"""What most kinds of surface need."""
 
 
 def _told(runner: Runner, ran: Ran) -> tuple[PartRun, ...]:

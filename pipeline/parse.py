@@ -10,6 +10,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from decimal import Decimal, InvalidOperation
+from difflib import get_close_matches
 from pathlib import Path as FilePath
 
 from pipeline.decode import Repeated
@@ -43,7 +44,19 @@ def read_bytes(file: FilePath) -> bytes:
         raise BadInputError(Problem(too_large, hint="is this a job file?", file=str(file))) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise BadInputError(Problem(f"cannot be read: {reason}", file=str(file))) from None
+        raise BadInputError(Problem(f"cannot be read: {reason}", hint=_instead(file), file=str(file))) from None
+
+
+def _instead(file: FilePath) -> str:
+    """Return which file may have been meant where one cannot be read; nothing where none comes near."""
+    folder = file if file.is_dir() else file.parent
+    try:
+        names = {each.stem: each.name for each in folder.iterdir() if each.suffix.lower() in (".toml", *JSON_ENDINGS)}
+    except (OSError, ValueError):
+        return "" if folder.is_dir() else f"there is no folder {folder}"
+    alone = [*names] if len(names) == 1 else []
+    near = alone if folder == file else get_close_matches(file.stem, sorted(names), 1)
+    return f"did you mean {folder / names[near[0]]}?" if near else ""
 
 
 def text_of(content: bytes, file: FilePath) -> str:
@@ -131,8 +144,9 @@ def _syntax_problem(text: str, file: str, error: ValueError) -> Problem:
         return Problem(f"JSON: {error.msg}", file=file, line=error.lineno, column=error.colno)
     place = _TOML_PLACE.search(str(error))
     if place:
-        message = str(error)[: place.start()]
-        return Problem(f"TOML: {message}", file=file, line=int(place[1]), column=int(place[2]))
+        message, line = str(error)[: place.start()], int(place[1])
+        hint = _toml_hint(text.split("\n")[line - 1][:LOOKED_AT])
+        return Problem(f"TOML: {message}", hint=hint, file=file, line=line, column=int(place[2]))
     digits = _LONG_NUMBER.search(text)
     if isinstance(error, tomllib.TOMLDecodeError) or digits is None:
         message = f"TOML: {str(error).removesuffix(' (at end of document)')}"
@@ -142,28 +156,63 @@ def _syntax_problem(text: str, file: str, error: ValueError) -> Problem:
     return Problem("a number of thousands of digits", file=file, line=line, column=column)
 
 
-def override(raw: dict[str, object], settings: Iterable[str]) -> tuple[Path, ...]:
-    """Set `path=value` in place and return the paths set; `BadInputError` for what cannot be set."""
-    paths: list[Path] = []
-    problems: list[Problem] = []
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        path = parsed(name.strip())
-        if not (equals and path):
-            example = "write --set part[0].surface.k0=1"
-            problems.append(Problem(f'"{setting}" is not path=value', hint=example, file=SET))
-        elif not _put(raw, path, _setting_value(value.strip())):
-            hint = "the tables and arrays on the way must be there, or be tables"
-            problems.append(Problem("no such place in the job file", path=name.strip(), hint=hint, file=SET))
-        else:
-            paths.append(path)
-    if problems:
-        raise BadInputError(*problems)
-    return tuple(paths)
+_UNQUOTED = (
+    (re.compile(r"[=\[,]\s*(-?[\d./]+ ?(?:mm|cm|m|um|in|ft|deg|rad|\"|'))(?![\w\"'])"), "a number with its unit"),
+    (re.compile(r"=\s*(?!true|false|inf|nan)([^\W\d][\w .-]*?)\s*(?:[,}#]|$)"), "a text"),
+)
+LOOKED_AT = 500
+"""Letters of a line that TOML does not read: what is meant there is seen at its begin."""
+_DECIMAL_COMMA = re.compile(r"=\s*-?(\d+),(\d+)")
+
+
+def _toml_hint(line: str) -> str:
+    """Return what is most likely meant on a line that TOML does not read: quotes that are missing, a decimal comma."""
+    comma = _DECIMAL_COMMA.search(line)
+    if comma is not None:
+        return f"decimals come after a point: {comma[1]}.{comma[2]}"
+    for pattern, what in _UNQUOTED:
+        found = pattern.search(line)
+        if found is not None:
+            return f'{what} stands in quotes: "{found[1]}"'
+    return ""
 
 
 SET = "--set"
 """Stands in messages where the name of a file would."""
+
+
+class Setting(str):
+    """`path=value` that was not said by `--set`; origin: where it was, as messages say it."""
+
+    origin: str = SET
+
+
+def setting_of(path: str, value: str, origin: str) -> Setting:
+    """Return a setting with its origin."""
+    made = Setting(f"{path}={value}")
+    made.origin = origin
+    return made
+
+
+def override(raw: dict[str, object], settings: Iterable[str]) -> dict[Path, str]:
+    """Set `path=value` in place and return the paths set with their origins; `BadInputError` for what cannot be set."""
+    paths: dict[Path, str] = {}
+    problems: list[Problem] = []
+    for setting in settings:
+        origin = setting.origin if isinstance(setting, Setting) else SET
+        name, equals, value = setting.partition("=")
+        path = parsed(name.strip())
+        if not (equals and path):
+            example = "write --set part[0].surface.k0=1"
+            problems.append(Problem(f'"{setting}" is not path=value', hint=example, file=origin))
+        elif not _put(raw, path, _setting_value(value.strip())):
+            hint = "the tables and arrays on the way must be there, or be tables"
+            problems.append(Problem("no such place in the job file", path=name.strip(), hint=hint, file=origin))
+        else:
+            paths[path] = origin
+    if problems:
+        raise BadInputError(*problems)
+    return paths
 
 
 def _setting_value(text: str) -> object:

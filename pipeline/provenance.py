@@ -2,10 +2,11 @@
 
 Whoever signs a report can tell from this block what was judged, by which program, against which numbers, and who chose
 them.  The digest of the input is that of its values: layout and comments of the job file do not count (the file's own
-digest is told in `run`, as the file is of this run and not of the job).  Same job and same program, same block.
+digest is told in `run`, as the file is of this run and not of the job).  A limit that the job gives is the job's, even
+where planish takes the same.  Same job and same program, same block.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -106,10 +107,13 @@ def _digest(file: Traversable) -> str:
     return sha256(file.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
 
 
-def limits_of(job: JobFile) -> tuple[Limit, ...]:
-    """Return every number that the parts of a job are held against, with its source."""
+def limits_of(job: JobFile, stated: Container[str]) -> tuple[Limit, ...]:
+    """Return every number that the parts of a job are held against, with its source.
+
+    stated: the keys of `tolerance` that the job gives: its own, even where they are what planish takes too.
+    """
     row = look_up(job.material.name)[0] if job.material.name else None
-    return (*_tolerances(job.tolerance), *_material(job.material, row), *_process(job))
+    return (*_tolerances(job.tolerance, stated), *_material(job.material, row), *_process(job))
 
 
 def _process(job: JobFile) -> Iterator[Limit]:
@@ -118,15 +122,14 @@ def _process(job: JobFile) -> Iterator[Limit]:
         yield Limit(name, found.value, "mm", found.source)
 
 
-def _tolerances(table: ToleranceTable) -> Iterator[Limit]:
-    default = Tolerances()
-    by = f"class {table.accept!r}, {DEFAULT if table.accept == default.accept else f'{JOB}, tolerance.accept'}"
+def _tolerances(table: ToleranceTable, stated: Container[str]) -> Iterator[Limit]:
+    sources = {key: f"{JOB}, tolerance.{key}" if key in stated else DEFAULT for key in ("accept", "chord", "join")}
+    by = f"class {table.accept!r}, {sources['accept']}"
     yield Limit("max_warp_deg", WARP_LIMIT_DEG[table.accept], "deg", by)
     yield Limit("max_strain", STRAIN_LIMIT[table.accept], "", by)
-    for name, value, usual in (("chord", table.chord, default.chord_mm), ("join", table.join, default.join_mm)):
-        source = DEFAULT if float(value) == usual else f"{JOB}, tolerance.{name}"
-        yield Limit(name, float(value), "mm", source)
-    yield Limit("tangent_norm", default.tangent_norm, "", DEFAULT)
+    yield Limit("chord", float(table.chord), "mm", sources["chord"])
+    yield Limit("join", float(table.join), "mm", sources["join"])
+    yield Limit("tangent_norm", Tolerances().tangent_norm, "", DEFAULT)
 
 
 def _material(table: MaterialTable, row: MaterialRow | None) -> Iterator[Limit]:

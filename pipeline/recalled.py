@@ -3,12 +3,14 @@
     flat/<part>.dxf + flat/<part>.json -> the pattern with its features
 
 A side file counts if it names the drawing by its digest and has as many contours, marks and texts; else nothing is
-taken from it, and whoever asks is told so.  Holes that are drilled or stitched through are circles again, whatever
-chords the drawing holds; all other contours stay as they were drawn.
+taken from it, and whoever asks is told so.  One that counts and that its drawing contradicts is refused.  Holes that
+are drilled or stitched through are circles again, whatever chords the drawing holds; all other contours stay as they
+were drawn.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 from math import asin, pi, sin
 
 import msgspec
@@ -16,6 +18,7 @@ import numpy as np
 from msgspec import Struct
 
 from pipeline.sideentries import DrillSide, FeatureSide, FileSide, NotchSide, Purpose, Row3
+from pipeline.sidefaults import side_faults
 from pipeline.store import digest
 from stages.geometry.arrays import Vector2, norm
 from stages.geometry.curves.plane import CircularArc
@@ -42,8 +45,15 @@ class SideEntry(Struct, frozen=True):
     features: FeatureSide
 
 
+class SideFileError(ValueError):
+    """A side file that its own drawing contradicts."""
+
+
 def recalled(pattern: FlatPattern, side: bytes | None, drawing: bytes) -> FlatPattern | None:
-    """Return the pattern of a drawing with what its side file says; None where that is not the file of the drawing."""
+    """Return the pattern of a drawing with what its side file says; None where that is not the file of the drawing.
+
+    Raises SideFileError where it is, and says what cannot be.
+    """
     said = None if side is None else _decoded(side)
     if said is None or digest(drawing) not in {file.sha256 for file in said.files}:
         return None
@@ -52,7 +62,15 @@ def recalled(pattern: FlatPattern, side: bytes | None, drawing: bytes) -> FlatPa
     counts = len(holes), len(found.marks), len(found.texts)
     if counts != (len(pattern.inner), len(pattern.marks), len(pattern.texts)):
         return None
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is not within any bound
+        faults = [*islice(side_faults(pattern, [(one.name, one.circle) for one in holes], found), MOST_TOLD)]
+    if faults:
+        raise SideFileError("; ".join(faults))
     return _restored(pattern, holes, found)
+
+
+MOST_TOLD = 5
+"""Faults of one side file that are told."""
 
 
 def _decoded(side: bytes) -> SideEntry | None:

@@ -5,10 +5,11 @@ without a unit has that of the job, and that is noted.  Pieces whose ends meet b
 An outline must be closed; the holes of a plate, and the defects of a sheet, are all closed contours of their layer.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
 from io import BytesIO, TextIOWrapper
+from math import dist
 from typing import TYPE_CHECKING
 
 from pipeline.decode import ResolveError, Several, suggestion
@@ -46,6 +47,7 @@ class Sources:
 
     meshes, faces: by the number of the part; touched: the meshes besides that its surface points at.
     layout: name and bytes of the file that says where copies lie, if there is one.
+    tolerances: the keys of [tolerance] that the job gives itself, whatever their values are.
     """
 
     reach: Reach
@@ -57,6 +59,7 @@ class Sources:
     faces: dict[int, "CadSource"] = field(default_factory=dict)
     touched: dict[int, "dict[MeshNormals, MeshSource]"] = field(default_factory=dict)
     layout: tuple[str, bytes] | None = None
+    tolerances: frozenset[str] = frozenset()
 
     def resolve(self, table: Table, path: Path) -> Table | Several:
         """Return the curve, or curves, that a reference to a drawing stands for; other tables as they are."""
@@ -77,8 +80,7 @@ class Sources:
             _all_closed(curves, key)
             return Several(tuple(curve.spec() for curve in curves))
         if len(curves) != 1:
-            hint = "give each a layer of its own, or make their ends meet"
-            raise ResolveError(key, f"{len(curves)} separate curves where one belongs", hint)
+            raise ResolveError(key, *_not_one(curves))
         if path[-1:] == ("outline",):
             _all_closed(curves, key)
         return curves[0].spec()
@@ -212,12 +214,23 @@ def _same(a: str, b: str) -> bool:
     return a.casefold() == b.casefold()
 
 
+def _not_one(curves: "Sequence[Piece]") -> tuple[str, str]:
+    """Return the message and the hint for curves that are not one."""
+    from pipeline.drawings import GAP_MM, least_gap
+
+    gap = least_gap(curves)
+    apart = "" if gap is None else f": the nearest ends are {gap:.4g} mm apart"
+    hint = f"give each a layer of its own, or make their ends meet within {GAP_MM:g} mm"
+    return f"{len(curves)} separate curves where one belongs{apart}", hint
+
+
 def _all_closed(curves: "list[Piece]", key: str) -> None:
     """Refuse open curves."""
     for curve in curves:
         if not curve.closed:
             (x0, y0, _), (x1, y1, _) = curve.start, curve.end
-            message = f"the curve from ({x0:.6g}, {y0:.6g}) to ({x1:.6g}, {y1:.6g}) mm is open"
+            ends = f"the curve from ({x0:.6g}, {y0:.6g}) to ({x1:.6g}, {y1:.6g}) mm is open"
+            message = f"{ends}, its ends {dist(curve.start, curve.end):.4g} mm apart"
             raise ResolveError(key, message, "close the contour in the drawing")
 
 

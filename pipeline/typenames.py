@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from msgspec import inspect
 
+from pipeline.paths import Path
 from stages.model.scalars import Angle, Coordinate, Curvature, Length, Number
 
 QUANTITY_NAMES: dict[type, str] = {
@@ -45,6 +46,22 @@ def type_name(sort: inspect.Type) -> str:
             return f"a text{_between(sort.min_length, sort.max_length, ' characters')}"
         case _:
             return "true or false"
+
+
+def needed(sort: inspect.Type, path: Path) -> str:
+    """Return what belongs at a path, as a hint: with how it is written where that is easily got wrong."""
+    name = f"{type_name(sort)} is needed"
+    steps = [step for step in path if isinstance(step, str)]
+    if isinstance(sort, inspect.VarTupleType) and type_name(sort.item_type) in TABLES and len(steps) <= DEEPEST_HEADING:
+        return f"{name}; in TOML write [[{'.'.join(steps)}]] over each"
+    if isinstance(sort, inspect.LiteralType) and len(sort.values) == 1 and steps:
+        return f"{steps[-1]} = {quoted(sort.values)[0]} is needed"
+    return name
+
+
+TABLES = ("a table", "a table with a kind")
+DEEPEST_HEADING = 2
+"""Tables further inside are written in braces rather than under headings of their own."""
 
 
 def quoted(words: Iterable[object]) -> list[str]:

@@ -4,6 +4,7 @@ The first row of the table holds paths as `--set` takes them (`part[0].surface.k
 names the jobs, if there is one.  An empty cell leaves the template as it is.  The table is CSV in UTF-8, with a mark
 of that at its begin or without; between its cells are commas, semicolons or tabs, whichever make paths of the first
 row; cells stand in quotes where they hold these, quotes or ends of lines.  Rows stream: a table may have millions.
+In messages they are counted as spreadsheets do: the first row, that of the paths, is row 1.
 """
 
 import codecs
@@ -16,6 +17,7 @@ from typing import BinaryIO
 
 from pipeline.batch.entries import DIGITS, JOB_ENDS, Entries, Entry, Source, capped, job_id, read_some
 from pipeline.batch.identity import content
+from pipeline.parse import setting_of
 from pipeline.paths import parsed
 from pipeline.store import safe_name
 from stages.errors import BadInputError, Problem
@@ -110,7 +112,7 @@ def rows(table: Table) -> Entries:
             if number and own:
                 start = offset + len(record) - len(record.lstrip(AROUND))
                 name = (names is not None and _id(own, names, table.between)) or f"{stem}-{number:0{DIGITS}}"
-                yield source, Entry(name, start, len(own), number, content_of(table, own))
+                yield source, Entry(name, start, len(own), number + 1, content_of(table, own))
             offset += size
 
 
@@ -151,15 +153,18 @@ def _cells(text: str, between: str) -> list[str]:
         raise ValueError(str(error)) from None
 
 
-def settings(columns: Sequence[str], own: bytes, between: str = ",") -> tuple[str, ...]:
-    """Return what a row sets, as `--set` takes it; `ValueError` saying why nothing can be made of it."""
+def settings(columns: Sequence[str], own: bytes, between: str = ",", origin: str = "the row") -> tuple[str, ...]:
+    """Return what a row sets, as `--set` takes it; `ValueError` saying why nothing can be made of it.
+
+    origin: the file and the row, as messages say it.
+    """
     try:
         cells = _cells(own.decode(), between)
     except UnicodeDecodeError:
-        raise ValueError(f"the row is not UTF-8 text; {AS_UTF8}") from None
+        raise ValueError(f"{origin} is not UTF-8 text; {AS_UTF8}") from None
     except ValueError as error:
-        raise ValueError(f"the row cannot be read: {error}") from None
+        raise ValueError(f"{origin} cannot be read: {error}") from None
     if len(cells) != len(columns):
-        raise ValueError(f"{len(cells)} cells where the table has {len(columns)} columns")
+        raise ValueError(f"{origin}: {len(cells)} cells where the table has {len(columns)} columns")
     pairs = zip(columns, cells, strict=True)
-    return tuple(f"{path}={cell.strip()}" for path, cell in pairs if path != ID and cell.strip())
+    return tuple(setting_of(path, cell.strip(), origin) for path, cell in pairs if path != ID and cell.strip())

@@ -69,9 +69,9 @@ class Places:
         if families.content_of(table, own) != place.content:
             raise ChangedError(source.path)
         try:
-            settings = families.settings(table.columns, own, table.between)
+            settings = families.settings(table.columns, own, table.between, f"{source.path}: row {place.line}")
         except ValueError as error:
-            raise UnfitError(f"{source.path}: row {place.line}: {error}", place) from None
+            raise UnfitError(str(error), place) from None
         return self._work(place, draft, table.own, settings=settings)
 
     def _work(

@@ -11,6 +11,8 @@ from pipeline.batch.told import Tally
 
 TERMINAL_S, PLAIN_S = 0.2, 10.0
 """Between two lines."""
+FIRST_S = 60.0
+"""Between those that come before the first job has ended, once it was said that the workers start."""
 WINDOW_S = 30.0
 """The rate is that of this time: of the whole run it would hide that jobs become longer."""
 MOST_TOLD = 20
@@ -31,6 +33,7 @@ class Progress:
     ended: Counter[str] = field(default_factory=Counter)
     samples: deque[tuple[float, int]] = field(default_factory=deque)
     shown: float = 0.0
+    begun: bool = False
     width: int = 0
 
     def __call__(self, loop: Loop, event: Event | None) -> None:
@@ -41,9 +44,15 @@ class Progress:
             self.shown = now
         if event is not None:
             self._note(event)
-        if now - self.shown >= (TERMINAL_S if self.terminal else PLAIN_S):
+        if now - self.shown >= self._pause():
             self.shown = now
             self._show(loop, now)
+
+    def _pause(self) -> float:
+        """Return the seconds between two lines: before the first job has ended there is little to tell twice."""
+        if self.terminal or self.write is not None:
+            return TERMINAL_S if self.terminal else PLAIN_S
+        return FIRST_S if self.begun and not self.ended else PLAIN_S
 
     def _note(self, event: Event) -> None:
         record = event.record
@@ -71,11 +80,14 @@ class Progress:
             self.write(json.dumps(said | {"rate": round(rate, 3)}))
         if not self.quiet:
             self._again(self.text(loop, rate)) if self.terminal else self.say(self.text(loop, rate))
+        self.begun = True
 
     def text(self, loop: Loop, rate: float) -> str:
         """Return a line on how far it is, with the time that is left at this rate."""
         done, failed = self.ended.total(), self.ended.total() - self.ended["made"]
         of = f"{loop.accepted} jobs taken in" if loop.left is None else f"{loop.left} left"
+        if not done:
+            return f"{of}, none done yet" if self.begun and not self.terminal else f"{of}, the workers start"
         left = "" if loop.left is None or rate <= 0 else f", {duration(loop.left / rate)} to go"
         return f"{done} done, {of}, {rate:.3g}/s{left}{f', {failed} not made' if failed else ''}"
 

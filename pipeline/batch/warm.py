@@ -1,8 +1,8 @@
 """What every job needs, loaded once: the process that all children are forked from imports this module first.
 
-One small job is run, so that what is imported or worked out on the way is there; what only some kinds of surface
-need is loaded by the child that meets one.  The children share it all as long as no one writes to it, and `gc.freeze`
-keeps the collector from touching it.
+One small job is run, so that what is imported or worked out on the way is there; what other kinds of surface need is
+loaded besides (`eager`), but not the search of a nest, which compiles and has processes of its own.  The children share
+it all as long as no one writes to it, and `gc.freeze` keeps the collector from touching it.
 
 One thread for linear algebra, set before numpy is loaded: children share the cores, and the last bits of a sum would
 depend on the number of threads.  A nest is searched by one thread as well.  The values are set, not proposed, so that
@@ -12,7 +12,6 @@ every machine of a cluster computes alike.
 import gc
 import os
 from contextlib import suppress
-from importlib import import_module
 from pathlib import Path
 
 from pipeline.orphans import die_with_parent
@@ -29,7 +28,8 @@ SERVER = os.getpid()
 """The process that loads this module; a child that is forked from it finds its parent here."""
 STDERR = 2
 KIND = "cylinder"
-BESIDES = ("pipeline.batch.guard", "scipy.interpolate", "scipy.optimize")
+BESIDES = ("stages.write", "stages.nest.legal")
+"""Packages whose modules are loaded as well: what only other formats and nests need."""
 
 
 def prepare() -> None:
@@ -45,7 +45,9 @@ def prepare() -> None:
 
 
 def warm_up() -> None:
-    """Run a job of all formats without stock, and load what most other kinds need besides."""
+    """Run a job of all formats without stock, and load what other kinds and formats need besides."""
+    from pipeline.batch import guard  # noqa: F401  # every child needs it
+    from pipeline.eager import load, load_parts
     from pipeline.job import job_of
     from pipeline.jobfile import Given, read
     from pipeline.kinds import template
@@ -54,8 +56,8 @@ def warm_up() -> None:
 
     text = Given(text=template(KIND).encode())
     outputs(run_job(job_of(read(Path(f"{KIND}.toml"), ("stock=[]",), given=text))))
-    for name in BESIDES:
-        import_module(name)
+    load_parts()
+    load(BESIDES)
 
 
 if __name__ == "__main__":

@@ -30,6 +30,9 @@ ROUND = 1e-12
 """Share of its radius by which an edge may leave a circle that is one: rounding of its control points."""
 DEEPEST = 64
 """Blocks within blocks; more is a block that holds itself."""
+MOST_INSERTED = 20_000
+"""Objects of blocks, each counted as often as it is inserted: blocks within blocks multiply, 20 doublings make a
+million.  A part that is cut from sheets has some hundreds."""
 
 
 class UnreadableCadError(Exception):
@@ -54,18 +57,42 @@ def faces(file: str) -> CadBody:
 
 def _breps(model: rhino3dm.File3dm) -> Iterator[tuple[str, rhino3dm.Brep]]:
     """Yield every body with the name of its object."""
-    for entry in model.Objects:
-        if not entry.Attributes.IsInstanceDefinitionObject:
-            yield from _bodies(model, entry, 0)
+    entries = [entry for entry in model.Objects if not entry.Attributes.IsInstanceDefinitionObject]
+    known: dict[str, int] = {}
+    inserted = sum(_inserted(model, entry, known, 0) for entry in entries)
+    if inserted > MOST_INSERTED:
+        raise UnreadableCadError(f"its blocks insert {inserted:.4g} objects; read here are at most {MOST_INSERTED}")
+    for entry in entries:
+        yield from _bodies(model, entry)
 
 
-def _bodies(model: rhino3dm.File3dm, entry: rhino3dm.File3dmObject, depth: int) -> Iterator[tuple[str, rhino3dm.Brep]]:
-    thing, name = entry.Geometry, entry.Attributes.Name
+def _inserted(model: rhino3dm.File3dm, entry: rhino3dm.File3dmObject, known: dict[str, int], depth: int) -> int:
+    """Return how many objects an object inserts; each block is counted once, and is `known` after that."""
     if depth > DEEPEST:
         raise UnreadableCadError(f"its blocks are nested more than {DEEPEST} deep")
+    thing = entry.Geometry
+    if not isinstance(thing, rhino3dm.InstanceReference):
+        return 0
+    name = str(thing.ParentIdefId)
+    if name not in known:
+        known[name] = sum(1 + _inserted(model, inner, known, depth + 1) for inner in _block(model, thing))
+    return known[name]
+
+
+def _block(model: rhino3dm.File3dm, reference: rhino3dm.InstanceReference) -> list[rhino3dm.File3dmObject]:
+    """Return the objects of the block that is inserted."""
+    block = model.InstanceDefinitions.FindId(reference.ParentIdefId)
+    found = [] if block is None else [model.Objects.FindId(str(inner)) for inner in block.GetObjectIds()]
+    if block is None or None in found:
+        raise UnreadableCadError("it inserts a block that it does not hold")
+    return found
+
+
+def _bodies(model: rhino3dm.File3dm, entry: rhino3dm.File3dmObject) -> Iterator[tuple[str, rhino3dm.Brep]]:
+    thing, name = entry.Geometry, entry.Attributes.Name
     if isinstance(thing, rhino3dm.InstanceReference):
-        for inner in model.InstanceDefinitions.FindId(thing.ParentIdefId).GetObjectIds():
-            for inner_name, brep in _bodies(model, model.Objects.FindId(str(inner)), depth + 1):
+        for inner in _block(model, thing):
+            for inner_name, brep in _bodies(model, inner):
                 moved = brep.Duplicate()
                 moved.Transform(thing.Xform)
                 yield inner_name, moved

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pipeline.report.document import Document, compact
 from pipeline.report.meanings import MEANINGS
 from pipeline.report.pages import asset, page
+from pipeline.report.telling import told_of
 
 STYLES = ("page.css", "print.css")
 LIBRARY = "three.min.js"
@@ -109,7 +110,7 @@ def entries(document: Mapping[str, object], key: str) -> Iterator[Row]:
 
 
 def summary(part: Row) -> Document:
-    """Return the row of a part: what the table shows of it, and how many of its checks failed."""
+    """Return the row of a part: what the table shows of it, and for how many reasons it failed."""
     stages = list(entries(part, "stages"))
     metrics = [metric for stage in stages for metric in entries(stage, "metrics")]
     findings = [finding for stage in stages for finding in entries(stage, "findings")]
@@ -118,12 +119,19 @@ def summary(part: Row) -> Document:
         "name": part["name"],
         "quantity": part["quantity"],
         "class": part["class"],
-        "failed": sum(not metric["pass"] for metric in metrics) + sum(bool(one["fatal"]) for one in findings),
+        "failed": sum(map(_reasons, stages)),
         "checks": sum(metric["limit"] is not None for metric in metrics),
         "findings": len(findings),
         "strain": strains[-1] if strains else None,
         "mass": part.get("mass_kg"),
     }
+
+
+def _reasons(stage: Row) -> int:
+    """Return for how many reasons a stage failed: a number past its limit and the finding that tells of it are one."""
+    fatal = [str(one["code"]) for one in entries(stage, "findings") if one["fatal"]]
+    told = told_of(fatal)
+    return len(fatal) + sum(not one["pass"] and one["name"] not in told for one in entries(stage, "metrics"))
 
 
 def metric_names(report: Document) -> set[str]:

@@ -5,6 +5,7 @@ Where something fails, the lines below say where, how much, what is allowed, and
 
 from collections.abc import Collection, Iterator
 
+from pipeline.report.telling import told_of
 from pipeline.report.traveller.numbers import counted
 from pipeline.run import JobResult, Step
 from stages.model.report import Metric, StageReport, Where
@@ -36,12 +37,13 @@ REMEDIES = {
     "bend-radius": "bend less sharply, take thinner sheet, or another material",
     "bend-strain": "bend less sharply, take thinner sheet, or another material",
     "apex-on-directrix": "move the apex off the curve",
-    "open-contour": "close the outline, or widen join under [tolerance]",
+    "open-contour": "close the contour: end it at the point where it begins",
     "chain-open": "make the pieces meet, or widen join under [tolerance]",
     "cusp": "smooth the curve there, or cut the part into pieces",
     "zero-ruling": "keep the two curves apart",
     "singular-ruling": "turn the rulings off the direction of the curve",
-    "does-not-fit": "give a larger sheet, more rotations, or smaller gaps",
+    "part-too-large": "give a larger sheet under [[stock]], smaller gaps, or cut the part into pieces",
+    "stock-exhausted": "give more or larger sheets under [[stock]]",
 }
 """What to do, by the name of a failed metric or the code of a finding."""
 
@@ -90,21 +92,13 @@ def _amount(value: float | bool | None, unit: str) -> str:
 
 def trouble_lines(report: StageReport) -> Iterator[str]:
     """Yield what failed and what an engineer must know, with place, limit and remedy."""
-    told = {name for finding in report.findings for name in TELLS_OF.get(finding.code, ())}
+    told = told_of(finding.code for finding in report.findings)
     for metric in report.metrics:
         if not metric.passed and metric.name not in told:
             yield _advised(metric.name, _failure(metric))
     for finding in report.findings:
         text = finding.message if " at " in finding.message else f"{finding.message}{_place(finding.where)}"
         yield _advised(finding.code, text) if finding.fatal else f"  note: {text}"
-
-
-TELLS_OF = {
-    "not-developable": ("max_warp_deg", "equivalent_warp_deg"),
-    "edge-of-regression": ("max_warp_deg",),
-    "bend-radius": ("min_bend_radius_mm",),
-}
-"""Findings that say in words what a failed metric says, which is then not said twice."""
 
 
 def _failure(metric: Metric) -> str:

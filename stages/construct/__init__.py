@@ -10,12 +10,8 @@ developable is not decided here: `verify` does that for every kind alike.
 import numpy as np
 
 from stages.construct.assemble import patches_of
-from stages.construct.faces.surface import face_surface
 from stages.construct.features import placed
 from stages.construct.joins import join_metrics, join_rows, joins_of
-from stages.construct.meshes.surface import mesh_surface
-from stages.construct.openings import main_opening
-from stages.construct.plates import plate
 from stages.geometry.ruled.planarity import is_planar
 from stages.geometry.ruled.ruled import RuledPatch, size_of
 from stages.model.caps import MOST_CHORDS
@@ -34,12 +30,20 @@ __all__ = ["construct"]
 def construct(part: Part, tol: Tolerances) -> Outcome[Surface | None]:
     """Return the surface of a part in mm, or None with the reason; lengths are exact to rounding."""
     if isinstance(part.spec.surface, Flat):
+        from stages.construct.plates import plate
+
         return plate(part, part.spec.surface, tol)
     if isinstance(part.spec.surface, MainOpening):
+        from stages.construct.openings import main_opening
+
         return main_opening(part, part.spec.surface.tee)
     if isinstance(part.spec.surface, MeshFile):
+        from stages.construct.meshes.surface import mesh_surface
+
         return mesh_surface(part, part.spec.surface, tol)
     if isinstance(part.spec.surface, FaceFile):
+        from stages.construct.faces.surface import face_surface
+
         return face_surface(part, tol)
     built = patches_of(part.spec.surface, tol, part.meshes)
     size = size_of(built.patches) if built.patches else 0.0

@@ -1,31 +1,24 @@
 """Each kind of ruled surface: its patches, what its theorem asks for, and what is found wrong.
 
-One function per kind, chosen by the type of its specification.
+One function per kind, chosen by the type of its specification.  Those of cones, cylinders and ruled surfaces are loaded
+with this module, the others where they are called: a job has few kinds.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from stages.construct.apex import apex_findings
-from stages.construct.bezierpair import bezier_pair
 from stages.construct.built import Built
 from stages.construct.curves import Chain, chain, largest_gap, ruled_patches
 from stages.construct.cutcone import cut_cone, cut_frustum
-from stages.construct.meshes.normals import NO_MESHES, Meshes
-from stages.construct.paper import paper_kind
-from stages.construct.pieces import strip_of
 from stages.construct.plain import cone_patches, cylinder_patches, directrix_of, frustum
 from stages.construct.quintic import vector
-from stages.construct.railkind import rail_strip
-from stages.construct.ribbons import ribbon
-from stages.construct.saddles import saddled_cylinder, tee
-from stages.construct.slope import slope
-from stages.construct.straps import strap
-from stages.construct.tangent import tangent_surface
-from stages.construct.transition import transition
+from stages.geometry.mesh.mesh import Mesh
 from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.developables import BezierPair, Slope, Tangent
 from stages.model.ducts import Tee, Transition
 from stages.model.envelopes import Ribbon, Strap
+from stages.model.meshes import MeshNormals
 from stages.model.part import Cone, Cylinder, Ruled, Strip, SurfaceSpec
 from stages.model.quintics import (
     QuinticCone,
@@ -39,10 +32,12 @@ from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
 
 
-def patches_of(spec: SurfaceSpec, tol: Tolerances, meshes: Meshes = NO_MESHES) -> Built:
+def patches_of(spec: SurfaceSpec, tol: Tolerances, meshes: Mapping[MeshNormals, Mesh]) -> Built:
     """Return the patches of a ruled kind; meshes: those that it points at."""
     match spec:
         case QuinticRuled() | QuinticPlanar() | QuinticCylinder() | QuinticCone() | QuinticStrip():
+            from stages.construct.paper import paper_kind
+
             return paper_kind(spec, tol)
         case Ruled():
             c0, c1 = chain(spec.c0), chain(spec.c1)
@@ -53,39 +48,66 @@ def patches_of(spec: SurfaceSpec, tol: Tolerances, meshes: Meshes = NO_MESHES) -
             link = directrix_of(spec)
             return _joined("directrix", link, _cone(spec, link), tol)
         case Cylinder() if spec.saddle is not None:
+            from stages.construct.saddles import saddled_cylinder
+
             patches, findings = saddled_cylinder(spec, spec.saddle)
             return Built(patches, findings=findings)
         case Cylinder():
             link = directrix_of(spec)
             return Built(cylinder_patches(spec, link), findings=_open("directrix", link, tol))
         case BezierPair():
+            from stages.construct.bezierpair import bezier_pair
+
             pair, refusals = bezier_pair(spec)
             return Built((pair,), findings=refusals)
+        case Tangent() | Slope() | Strap() | Ribbon():
+            return _along_curve(spec, tol, meshes)
+        case Rails():
+            from stages.construct.railkind import rail_strip
+
+            return rail_strip(spec, tol)
+        case Transition():
+            from stages.construct.transition import transition
+
+            patches, findings = transition(spec)
+            return Built(patches, findings=findings)
+        case Tee():
+            from stages.construct.saddles import tee
+
+            patches, findings = tee(spec)
+            return Built(patches, findings=findings)
+        case Strip():
+            from stages.construct.pieces import strip_of
+
+            return strip_of([patches_of(piece, tol, meshes) for piece in spec.pieces], tol)
+    raise ValueError(f"no construction for {type(spec).__name__}")
+
+
+def _along_curve(spec: Tangent | Slope | Strap | Ribbon, tol: Tolerances, meshes: Mapping[MeshNormals, Mesh]) -> Built:
+    """Return the patches of a kind that one curve carries."""
+    match spec:
         case Tangent():
+            from stages.construct.tangent import tangent_surface
+
             link = chain(spec.edge)
             patches, refusals = tangent_surface(spec, link, tol)
             return Built(patches, findings=(*_open("edge", link, tol), *refusals))
         case Slope():
+            from stages.construct.slope import slope
+
             link = chain(spec.curve)
             patches, measured, refusals = slope(spec, link, tol)
             return Built(patches, measured, (*_open("curve", link, tol), *refusals))
-        case Rails():
-            return rail_strip(spec, tol)
-        case Transition():
-            patches, findings = transition(spec)
-            return Built(patches, findings=findings)
-        case Tee():
-            patches, findings = tee(spec)
-            return Built(patches, findings=findings)
         case Strap():
+            from stages.construct.straps import strap
+
             link = chain(spec.centre)
             return _joined("centre", link, strap(spec, link, tol), tol)
         case Ribbon():
+            from stages.construct.ribbons import ribbon
+
             link = chain(spec.curve)
             return _joined("curve", link, ribbon(spec, link, tol, meshes), tol)
-        case Strip():
-            return strip_of([patches_of(piece, tol, meshes) for piece in spec.pieces], tol)
-    raise ValueError(f"no construction for {type(spec).__name__}")
 
 
 def _cone(spec: Cone, link: Chain) -> Built:

@@ -4,6 +4,7 @@ A refusal names the fold that no strip avoids (a lower bound, taken on two latti
 the fewest folds that there is.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -16,7 +17,9 @@ from stages.construct.rails import Piece, pieces, rows
 from stages.geometry.arrays import Values, norm, unit
 from stages.geometry.numeric.extremum import maximum
 from stages.geometry.rails.bound import Bound
+from stages.geometry.rails.folds import ROUNDS
 from stages.geometry.rails.graph import SMOOTH, Rules
+from stages.geometry.rails.hairpin import hairpin
 from stages.geometry.rails.strip import Rail, Strip, bounds, closed_bounds, closed_strip, open_strip
 from stages.geometry.rails.zeros import angles
 from stages.geometry.ruled.joins import join
@@ -36,6 +39,9 @@ def rail_strip(spec: Rails, tol: Tolerances) -> Built:
     closed = [_is_closed(rail, tol) for rail in (a, b)]
     if closed[0] != closed[1]:
         return Built((), findings=(Finding("open-and-closed", "one rail is open and the other is closed", True),))
+    doubled = [*_doubled(a.curves, "a"), *_doubled(b.curves, "b")]
+    if doubled:
+        return Built((), findings=tuple(doubled))
     fold = ANY_FOLD if spec.folds == "allow" else float(np.radians(float(spec.max_warp)))
     found = None
     if spec.min_radius > 0:
@@ -46,7 +52,7 @@ def rail_strip(spec: Rails, tol: Tolerances) -> Built:
     made = pieces(found)
     patches = tuple(piece.patch for piece in made)
     findings = (*_folds(patches), *_smaller(patches, a.curves, b.curves, closed=closed[0]), *_apexes(made))
-    findings = (*findings, *_too_sharp(made, spec))
+    findings = (*findings, *_unsettled(found), *_too_sharp(made, spec))
     return Built(patches, findings=findings, detail={"pieces": rows(found, made)})
 
 
@@ -55,6 +61,20 @@ def best_strip(rail_a: Rail, rail_b: Rail, rules: Rules, *, closed: bool) -> Str
     search = closed_strip if closed else open_strip
     smooth = search(rail_a, rail_b, replace(rules, fold_rad=0.0))
     return search(rail_a, rail_b, rules) if smooth is None and rules.fold_rad > 0.0 else smooth
+
+
+def _doubled(rail: Rail, name: str) -> Iterator[Finding]:
+    """Yield what is wrong with a rail that runs along a straight line and back without a corner between."""
+    found = ((number, hairpin(piece)) for number, piece in enumerate(rail))
+    for number, turn in found:
+        if turn is None:
+            continue
+        at = number + turn.v
+        message = (
+            f"rail {name} turns back at {name} = {at:.3g}, within {turn.off_mm:.3g} mm of a straight line of "
+            f"{turn.long_mm:.6g} mm: it has no width, and no tangent there; give it as a polyline there and back"
+        )
+        yield Finding("rail-doubled", message, True, {name: at})
 
 
 def _is_closed(rail: Chain, tol: Tolerances) -> bool:
@@ -143,6 +163,18 @@ def _folds(patches: tuple[RuledPatch, ...]) -> tuple[Finding, ...]:
         return ()
     message = f"the strip folds along {len(found)} ruling{'s' * (len(found) > 1)}, by at most {max(found):.6g} deg"
     return (Finding("folds", message),)
+
+
+def _unsettled(strip: Strip) -> tuple[Finding, ...]:
+    """Say that the search for the least folds ended before they had settled, and what it had come to."""
+    if strip.unsettled_rad == 0.0:
+        return ()
+    change = np.degrees(strip.unsettled_rad)
+    message = (
+        f"the search for the least folds ended after {ROUNDS} ever finer lattices, the last of which changed them by "
+        f"{change:.3g} deg: they are as stated, and may not be the least"
+    )
+    return (Finding("folds-unsettled", message, where={"change_deg": float(change)}),)
 
 
 def _smaller(patches: tuple[RuledPatch, ...], rail_a: Rail, rail_b: Rail, *, closed: bool) -> tuple[Finding, ...]:

@@ -17,8 +17,6 @@ from math import cos, radians, sin
 
 from msgspec.structs import replace as with_fields
 
-from stages.construct.faces.surface import face_blanks
-from stages.construct.meshes.surface import blanks
 from stages.model.curves import CurveSpec, EllipseSpec, Table
 from stages.model.ducts import Elbow, MainOpening, Tee, is_set
 from stages.model.faces import FaceFile
@@ -47,8 +45,12 @@ class Seam:
 def parts_of(part: Part) -> tuple[Part, ...]:
     """Return the blanks that a part is made of."""
     if isinstance(part.spec.surface, MeshFile):
+        from stages.construct.meshes.surface import blanks
+
         return blanks(part)
     if isinstance(part.spec.surface, FaceFile):
+        from stages.construct.faces.surface import face_blanks
+
         return face_blanks(part)
     if not is_set(part.spec.surface):
         return (part,)

@@ -1,8 +1,12 @@
 """Where the centre line of a strap has inflections that split it, and the longest part that has a strap all the same.
 
 Towards such an inflection the rulings lean over without bound, faster and faster: a part that ends short of it has a
-strap of half width w as long as w |d lambda / ds| < 1, lambda = tau / kappa.  Sampled, its ends by bisection.  Between
-two curved pieces a straight one is counted with the first alone: whether a strap twists along it is not asked here.
+strap of half width w as long as w |d lambda / ds| < 1, lambda = tau / kappa.  Between two curved pieces a straight one
+is counted with the first alone: whether a strap twists along it is not asked here.
+
+Sampled: parts that hold at samples, their ends by bisection, divided where w |d lambda / ds| has a peak in between that
+`extremum` finds; one narrower than 1/200 of a part may be missed.  Nothing is cut by it: the part that is told
+is a proposal, and the job that takes it up is measured like any other.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,6 +21,7 @@ from stages.construct.straprulings import RunsOff, value
 from stages.geometry.arrays import Mask, Values, norm
 from stages.geometry.curves.arclength import length_between
 from stages.geometry.curves.curves import Curve
+from stages.geometry.numeric.extremum import maximum
 from stages.geometry.ruled.envelope import Rectifying, closing, speed
 from stages.model.report import Finding
 from stages.model.tolerances import Tolerances
@@ -98,21 +103,41 @@ def _stretches(piece: int, curve: Curve, one: Found, half: float) -> list[Stretc
     """Return the parts of one piece that have a strap."""
     poles = one.poles if isinstance(one, RunsOff) else ()
     found = []
-    narrow = partial(_narrow, curve, None if one is None else _rulings(one, curve), half, poles)
+    rate = partial(_closing, curve, None if one is None else _rulings(one, curve), half, poles)
     for low, high in pairwise(sorted({0.0, *poles, 1.0})):
-        for start, end in _intervals(narrow, low, high):
+        for start, end in _parts(rate, low, high):
             length = length_between(partial(speed, curve), start, end)
             found.append(Stretch(piece + start, piece + end, length))
     return found
 
 
-def _narrow(curve: Curve, ruling: Curve | None, half: float, poles: Sequence[float], v: Values) -> Mask:
-    """Return where the edge of regression stays outside the strap."""
+def _closing(curve: Curve, ruling: Curve | None, half: float, poles: Sequence[float], v: Values) -> Values:
+    """Return w |d lambda / ds|: below 1 where the edge of regression stays outside the strap, infinite at a pole."""
     if ruling is None:
-        return np.ones(v.size, dtype=bool)
+        return np.zeros(v.size)
     with np.errstate(divide="ignore", invalid="ignore"):
-        outside: Mask = np.abs(closing(curve, ruling, v)) * half < 1.0
-    return np.asarray(outside & ~np.isin(v, poles))
+        rate: Values = np.abs(closing(curve, ruling, v)) * half
+    return np.where(np.isnan(rate) | np.isin(v, poles), np.inf, rate)
+
+
+def _parts(rate: Callable[[Values], Values], low: float, high: float) -> list[tuple[float, float]]:
+    """Return the parts of [low, high] in which a rate is below 1: at samples, and at its peaks between them."""
+    found = []
+    for start, end in _intervals(lambda v: rate(v) < 1.0, low, high):
+        peak = _peak(rate, start, end)
+        found += [(start, end)] if peak is None else [*_parts(rate, start, peak), *_parts(rate, peak, end)]
+    return found
+
+
+def _peak(rate: Callable[[Values], Values], start: float, end: float) -> float | None:
+    """Return the place inside an interval at which a rate is largest, if that is above 1."""
+    most, share = maximum(lambda s: rate(start + (end - start) * s))
+    place = start + (end - start) * share
+    return place if most > ROUNDED and start < place < end else None
+
+
+ROUNDED = 1.0 + 1e-9
+"""At the ends of a part, found by bisection, the rate is 1 but for rounding: that is no peak."""
 
 
 def _intervals(inside: Callable[[Values], Mask], low: float, high: float) -> list[tuple[float, float]]:

@@ -195,7 +195,7 @@ def is_whole(curve: CurveSpec) -> bool:
 
 
 def is_flat(curve: CurveSpec) -> bool:
-    """Return whether some point of the curve is given by two coordinates only."""
+    """Return whether some point or semi-axis of the curve is given by two coordinates only."""
     return len("xy") in dimensions(curve)
 
 
@@ -207,11 +207,13 @@ def plane_curves(spec: Table, *keys: str) -> Iterator[Trouble]:
 
 
 def dimensions(curve: CurveSpec) -> set[int]:
-    """Return by how many coordinates the points of the curve are given: 2, 3, or both where they are mixed."""
+    """Return by how many coordinates points and semi-axes are given: 2, 3, or both where they are mixed."""
     plain = [*(curve.bezier or ()), *(curve.points or ()), *(curve.polyline or ()), *(curve.line or ())]
     if curve.bspline is not None:
         plain += curve.bspline.points
-    plain += [spec.center for spec in (curve.arc, curve.circle, curve.ellipse) if spec is not None]
+    plain += [spec.center for spec in (curve.arc, curve.circle) if spec is not None]
+    if curve.ellipse is not None:
+        plain += [curve.ellipse.center, curve.ellipse.major, curve.ellipse.minor]
     helix = {len("xyz")} if curve.helix is not None else set()
     return {len(point) for point in plain} | helix | {n for part in curve.chain or () for n in dimensions(part)}
 

@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, field
 
+from stages.model.caps import MOST_FEATURES
 from stages.model.curves import (
     CurveSpec,
     PlanePoint,
@@ -64,7 +65,7 @@ class RulingMarks(Table, frozen=True, kw_only=True, tag_field="kind", tag="rulin
     """Lines to be etched: `count` rulings at equal turning of the normal, or one per `max_angle` of turning."""
 
     name: Name = "rulings"
-    count: Annotated[int, Meta(ge=1, le=10_000)] | None = None
+    count: Annotated[int, Meta(ge=1, le=MOST_FEATURES)] | None = None
     max_angle: Angle | None = None
 
     def troubles(self) -> Iterator[Trouble]:

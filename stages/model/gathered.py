@@ -1,6 +1,8 @@
 """Figures of one blank from those of its faces: the worst of each, the sum, or all together.
 
-A gathered figure is proved where that of every face is; it has the place of the face that it is from.
+A gathered figure is proved where that of every face is; it has the place of the face that it is from.  A face on which
+a figure is not defined is passed over, but for what that would hide: a figure with a place and no value is beyond all
+numbers there, and so is the largest of all faces; a sum that lacks one of its terms is none.
 """
 
 from collections.abc import Mapping, Sequence
@@ -8,8 +10,9 @@ from typing import Literal
 
 from stages.model.report import Evidence, Finding, Metric
 
-Rule = Literal["largest", "least", "sum", "all", "alike"]
-"""Which value stands for all: largest (by size), least, sum, whether all are true, or the one that all have."""
+Rule = Literal["largest", "most", "least", "sum", "all", "alike"]
+"""Which value stands for all: largest (by size), most and least (with sign), sum, whether all are true, or the one that
+all have."""
 
 
 def gathered(
@@ -32,7 +35,12 @@ def _gathered(found: Sequence[Metric], rule: Rule) -> Metric:
     if not known:
         return _with(found[0], None, evidence)
     values = [float(one.value or 0.0) for one in known]
+    unbounded = next((one for one in found if one.value is None and one.where is not None), None)
     match rule:
+        case "largest" | "most" if unbounded is not None:
+            return _with(unbounded, None, evidence)
+        case "sum" if len(known) < len(found):
+            return _with(found[0], None, evidence, placed=False)
         case "all":
             return _with(min(known, key=lambda one: bool(one.value)), all(one.value for one in known), evidence)
         case "sum":
@@ -41,6 +49,8 @@ def _gathered(found: Sequence[Metric], rule: Rule) -> Metric:
             return _with(known[0], values[0] if len(set(values)) == 1 else None, evidence)
         case "least":
             best = values.index(min(values))
+        case "most":
+            best = values.index(max(values))
         case "largest":
             best = max(range(len(values)), key=lambda i: abs(values[i]))
     return _with(known[best], known[best].value, evidence)

@@ -11,7 +11,7 @@ from typing import Annotated, Literal, get_args
 from msgspec import Meta, field
 from msgspec.structs import replace
 
-from stages.model.caps import MOST_ANGLES, MOST_FEATURES, MOST_PIECES
+from stages.model.caps import MOST_ANGLES, MOST_COPIES, MOST_FEATURES, MOST_PIECES
 from stages.model.curves import CurveSpec, Table, Trouble, absurd_lengths, plane_curves
 from stages.model.developables import BezierPair, Slope, Tangent
 from stages.model.ducts import Elbow, Saddle, Tee, Transition, blank_count, set_troubles
@@ -210,7 +210,7 @@ class PartSpec(Table, frozen=True, kw_only=True):
 
     name: Annotated[str, Meta(min_length=1, max_length=80)]
     surface: SurfaceSpec
-    quantity: Annotated[int, Meta(ge=1, le=100_000)] = 1
+    quantity: Annotated[int, Meta(ge=1, le=MOST_COPIES)] = 1
     face: Face = "middle"
     rotations: Literal["free"] | Annotated[tuple[Angle, ...], Meta(max_length=MOST_ANGLES)] | None = None
     grain: Angle | None = None

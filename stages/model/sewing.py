@@ -10,6 +10,7 @@ from typing import Annotated, Literal, get_args
 from msgspec import Meta, field
 from msgspec.structs import replace
 
+from stages.model.caps import MOST_FEATURES
 from stages.model.curves import Table, Trouble, negatives, not_positive
 from stages.model.features import NotchSpec
 from stages.model.scalars import Angle, Length
@@ -94,7 +95,7 @@ class StitchSpec(Table, frozen=True, kw_only=True):
 
     seam: str
     pitch: Length | None = None
-    count: Annotated[int, Meta(ge=2, le=10_000)] | None = None
+    count: Annotated[int, Meta(ge=2, le=MOST_FEATURES)] | None = None
     pitch_range: tuple[Length, Length] | None = None
     margin: Length = field(default_factory=Length)
     line: Literal["sew", "cut"] = "sew"

@@ -9,7 +9,7 @@ unrolls alike whatever its face.
 from dataclasses import dataclass
 from itertools import pairwise
 
-from stages.geometry.mesh.bending import MeshBends
+from stages.geometry.mesh.bends import MeshBends
 from stages.geometry.ruled.turning import FLAT, FOLD, Turning
 from stages.model.face import Face
 from stages.model.report import Finding

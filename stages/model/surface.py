@@ -7,8 +7,8 @@ import numpy as np
 
 from stages.geometry.arrays import ArrayValue, Numbers, Vector2
 from stages.geometry.curves.plane import PlaneCurve
-from stages.geometry.mesh.flat import MeshMap
 from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.nearest import OnMesh
 from stages.geometry.ruled.ruled import RuledPatch
 from stages.model.features import Feature

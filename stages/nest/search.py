@@ -5,7 +5,6 @@ given.  What comes back is a plan like any other, and is certified like any othe
 limited are offered as often as the best plan so far has them; of several kinds any mixture may turn out better.
 """
 
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -25,7 +24,7 @@ from stages.nest.sheets import Counts, Filled, Plan, Task, used_mm
 from stages.nest.turns import ANGLE_TOLERANCE_DEG, Turns, contains
 
 MOST_THREADS = 8
-"""More threads find little more, as they share one best layout."""
+"""More threads find little more, as they share one best layout; where there are fewer cores the worker takes those."""
 
 MOST_BINS = 40
 """So many sheets are offered, or as many as the best plan has: those first, then others."""
@@ -108,7 +107,7 @@ def pose(task: Task, first: Plan, seconds: float, seed: int) -> Posed | None:
     problem = Problem(kinds, items, bins, tuple(regions))
     start = tuple(_spot(kind, placed, hands, bin_) for kind, _, (bin_, placed) in rows)
     request = Request(
-        problem, start, not first.left, seconds, min(threads(), MOST_THREADS), seed,
+        problem, start, not first.left, seconds, MOST_THREADS, seed,
         tuple(bed.cost for bed in beds), tuple(bed.area_mm2 for bed in beds), tuple(bed.plain for bed in beds),
     )  # fmt: skip
     return Posed(request, hands, beds, [kept for _, kept, _ in rows])
@@ -117,13 +116,6 @@ def pose(task: Task, first: Plan, seconds: float, seed: int) -> Posed | None:
 def copies_of(task: Task) -> int:
     """Return how many copies lie on the sheets in the end."""
     return sum(task.counts.values()) + sum(len(sheet.placed) for sheet in task.start)
-
-
-def threads() -> int:
-    """Return how many threads may search: the cores this process may use, or fewer where NUMBA_NUM_THREADS says so."""
-    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    said = os.environ.get("NUMBA_NUM_THREADS", "")
-    return max(min(usable, int(said)), 1) if said.isdecimal() else usable
 
 
 def bins_for(task: Task, first: Plan) -> list[Bed]:

@@ -15,22 +15,18 @@ from dataclasses import dataclass, field, replace
 from stages.geometry.arrays import Points2
 from stages.geometry.flat.development import develop
 from stages.geometry.flat.flatmap import Development
-from stages.geometry.flat.relaxed import relaxed
 from stages.model.pattern import FlatPattern
 from stages.model.report import Metric, Outcome, StageReport
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface
 from stages.model.tolerances import Class, Tolerances
 from stages.unroll import outline
-from stages.unroll.branched import unroll_branched
 from stages.unroll.distortion import Distortion, measure
 from stages.unroll.divide import division
 from stages.unroll.features import Features, on_strip
 from stages.unroll.finished import box, finished, flat_figures
 from stages.unroll.forming import folded, formed, standing, with_pieces
 from stages.unroll.limits import area_findings, class_of, overlap, overlap_findings, strain_findings
-from stages.unroll.meshes import flatten_mesh
 from stages.unroll.onpart import on_part
-from stages.unroll.plates import flatten
 from stages.unroll.rolls import scheduled
 from stages.unroll.sensitivity import sensitivity
 from stages.unroll.sides import surface_figures
@@ -51,10 +47,16 @@ def unroll(certificate: Certificate, tol: Tolerances) -> Outcome[FlatPattern | N
     the chord.
     """
     if isinstance(certificate.surface, Plate):
+        from stages.unroll.plates import flatten
+
         return flatten(certificate.surface, tol)
     if isinstance(certificate.surface, MeshSurface):
+        from stages.unroll.meshes import flatten_mesh
+
         return flatten_mesh(certificate, tol)
     if isinstance(certificate.surface, BranchedSurface):
+        from stages.unroll.branched import unroll_branched
+
         return unroll_branched(certificate, certificate.surface, tol)
     surface = certificate.surface
     sheet = neutral(surface, tol)
@@ -83,6 +85,8 @@ def _laid(surface: RuledSurface, reached: Class) -> Laid:
     """Return the flat map: along the rulings, or by least strain if the surface has warp."""
     if reached == "exact":
         return Laid(develop(surface.patches))
+    from stages.geometry.flat.relaxed import relaxed
+
     found = relaxed(surface.patches, accuracy=FLATTENED)
     metrics = (
         Metric("flattening_error", found.reached, "", "sampled", FLATTENED),

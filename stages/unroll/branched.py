@@ -39,7 +39,8 @@ from stages.unroll.thickness import Neutral, neutral
 from stages.unroll.trimmed import length_error, net_areas
 
 RULES: dict[str, Rule] = {
-    "max_compression": "least",
+    "max_extension": "most",
+    "max_compression": "most",
     "bend_lines": "sum",
     "bend_angle_error_deg": "sum",
     "bend_pitch_min_mm": "least",

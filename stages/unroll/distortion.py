@@ -9,6 +9,11 @@ is mirrored has a negative one.  Lengths and area are compared as `sides` finds 
 at the corners.
 
 All of it is `sampled`: it holds at the nodes.  Measured bound on an exact map: 1e-12, wherever the panels lie.
+
+No strain is taken where S_u and S_v enclose almost no angle or the ruling has almost no length, beside an apex: of a
+panel with rulings up to L mm long and |S_v| up to s mm per unit of v that is an area below `CLEAR` L s times its width
+in v.  Root mean square and energy take it to be strained as the rest is on average; the extremes leave it out.  Where
+that is all of the part no strain is defined: the metric of E, F and G alone tells then.
 """
 
 from dataclasses import dataclass
@@ -30,7 +35,7 @@ from stages.unroll.sides import Edges, flat_area, flat_edges, surface_figures
 class Distortion:
     """The metrics of the unroll, and the figures of both sides that are compared: edges in mm, areas in mm2.
 
-    energy_mm2: the integral of the squares of both principal strains over the surface.
+    energy_mm2: the integral of the squares of both principal strains over the surface; None where there are none.
     """
 
     metrics: tuple[Metric, ...]
@@ -38,7 +43,7 @@ class Distortion:
     flat: Edges
     surface_area: float
     flat_area: float
-    energy_mm2: float
+    energy_mm2: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,15 +63,18 @@ def measure(surface: RuledSurface, development: Development, tol: Tolerances) ->
     lengths, surface_area = surface_figures(surface.patches)
     flat, area = flat_edges(nodes), flat_area(nodes)
     strains = [_principal(side, at) for side, at in zip(sides, nodes, strict=True)]
+    mean = _mean_square(strains)
     metrics = (
         _length_error(lengths, flat),
         Metric("area_error", abs(area - surface_area) / surface_area),
         _angle_error(surface, nodes),
         _at(surface, "metric_error", metric_error(sides, nodes)),
-        *_strains(surface, strains, nodes, tol),
+        *(_no_strains(tol) if mean is None else _strains(surface, strains, nodes, tol)),
+        Metric("strain_rms", None if mean is None else float(np.sqrt(mean / 2.0))),
         Metric("flat_gap_mm", piece_gap(nodes), "mm", "sampled", tol.join_mm),
     )
-    return Distortion(metrics, lengths, flat, surface_area, area, _energy(strains))
+    energy = None if mean is None else mean * surface_area
+    return Distortion(metrics, lengths, flat, surface_area, area, energy)
 
 
 def _at(surface: RuledSurface, name: str, extreme: Extreme, limit: float | None = None) -> Metric:
@@ -154,20 +162,32 @@ the panel's over a few digits."""
 
 
 def _extreme(values: Array, at: PieceNodes, piece: int) -> Extreme:
-    """Return the largest of values (m, n, k) with its place."""
-    panel, node, side = np.unravel_index(int(np.argmax(values)), values.shape)
-    return Extreme(float(values[panel, node, side]), piece, float(at.v[panel, node]), float(ACROSS[side]))
+    """Return the largest of values (m, n, k) with its place; NaN counts for nothing, minus infinity if all are NaN."""
+    known = np.where(np.isnan(values), -np.inf, values)
+    panel, node, side = np.unravel_index(int(np.argmax(known)), values.shape)
+    return Extreme(float(known[panel, node, side]), piece, float(at.v[panel, node]), float(ACROSS[side]))
 
 
-def _energy(found: "list[_Principal]") -> float:
-    """Return the integral of the squares of both principal strains, mm2."""
-    return sum(float(((strain.most**2 + strain.least**2) * strain.area).sum()) for strain in found)
+def _mean_square(found: "list[_Principal]") -> float | None:
+    """Return the mean over the area of the sum of the squares of both principal strains; None where there are none."""
+    area = sum(float(strain.area.sum()) for strain in found)
+    squares = sum(float(np.nansum((strain.most**2 + strain.least**2) * strain.area)) for strain in found)
+    return squares / area if area > 0.0 else None
+
+
+def _no_strains(tol: Tolerances) -> tuple[Metric, ...]:
+    """Return the extremes of strain of a map at no node of which they are defined."""
+    return Metric("max_strain", None, "", "sampled", STRAIN_LIMIT[tol.accept]), *(Metric(name, None) for name in OTHERS)
+
+
+OTHERS = "max_extension", "max_compression", "max_area_strain"
+"""Extremes of strain that no class has a limit for."""
 
 
 def _strains(
     surface: RuledSurface, found: "list[_Principal]", nodes: list[PieceNodes], tol: Tolerances
 ) -> tuple[Metric, ...]:
-    """Return the extremes of strain with their places, and its root mean square over the area."""
+    """Return the extremes of strain with their places."""
 
     def largest(values: list[Array]) -> Extreme:
         extremes = [_extreme(value, at, i) for i, (value, at) in enumerate(zip(values, nodes, strict=True))]
@@ -176,19 +196,20 @@ def _strains(
     extension = largest([strain.most for strain in found])
     compression = largest([-strain.least for strain in found])
     either = max(extension, compression, key=lambda extreme: extreme.value)
-    area = sum(float(strain.area.sum()) for strain in found)
     return (
         _at(surface, "max_strain", either, STRAIN_LIMIT[tol.accept]),
         _at(surface, "max_extension", extension),
         _at(surface, "max_compression", compression),
         _at(surface, "max_area_strain", largest([np.abs(_area_strain(strain)) for strain in found])),
-        Metric("strain_rms", float(np.sqrt(_energy(found) / 2.0 / area)) if area > 0.0 else None),
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Principal:
-    """Principal strains at the nodes of a piece, and the share of the surface's area each stands for, (m, n, k)."""
+    """Principal strains at the nodes of a piece, and the area of the surface that each stands for, mm2, (m, n, k).
+
+    NaN and no area where they are not defined.
+    """
 
     most: Array
     least: Array
@@ -204,7 +225,7 @@ def _area_strain(strain: _Principal) -> Array:
 def _principal(side: _Tangents, at: PieceNodes) -> _Principal:
     """Return the principal strains: singular values, less 1, in the orthonormal frame of ruling and across.
 
-    Zero, and without area, where the two enclose almost no angle: there the frame is not defined.
+    NaN, and without area, where the two enclose almost no angle: there the frame is not defined.
     """
     length = np.sqrt(_floored(dot(side.s_u, side.s_u)))
     e = side.s_u / length[..., None]
@@ -215,9 +236,8 @@ def _principal(side: _Tangents, at: PieceNodes) -> _Principal:
     flat_w = (at.flat_v - along[..., None] * flat_e) / np.where(clear, aside, 1.0)[..., None]
     turn, skew = similarities(flat_e, flat_w)
     area = at.weights[..., None] * ACROSS_WEIGHTS * length * aside
-    return _Principal(
-        np.where(clear, turn + skew - 1.0, 0.0), np.where(clear, turn - skew - 1.0, 0.0), np.where(clear, area, 0.0)
-    )
+    most, least = (np.where(clear, strain, np.nan) for strain in (turn + skew - 1.0, turn - skew - 1.0))
+    return _Principal(most, least, np.where(clear, area, 0.0))
 
 
 CLEAR = 1e-3

@@ -16,6 +16,7 @@ trim): that part stays whole.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from math import ceil, log2, pi
 
@@ -42,8 +43,11 @@ MOST_TURN = pi / 12.0
 FEWEST, MOST = 4, 512
 """Arcs along each edge of a patch: however straight it is, and however it winds (at `MOST_TURN` an arc, 21 times)."""
 
-HALVINGS = 8
-"""Of the largest run's share: the blanks are evened out to 1/256 of the area."""
+EVENED = 1.0 / 256.0
+"""Of the area: the largest blank is at most so much more than the least that it can be."""
+
+LOOKED = 64, 8, 1
+"""Shares of what is left in which the end of a run is first looked for: a run of t turns takes t cubed to look at."""
 
 NO_LENGTH = 1e-12
 """Below this share of the pattern's extent a length is rounding (an edge that is an apex)."""
@@ -139,8 +143,9 @@ def runs(strip: Strip, *, allowed: float) -> list[int]:
     if fewest is None or len(fewest) == 1:
         return [STEPS * len(strip.pieces)]
     low, high = 1.0 / len(fewest), 1.0
-    best, share = fewest, low * (1.0 + EVEN)
-    for _ in range(HALVINGS):
+    # by less than a step, so that what can be divided evenly is
+    best, share = fewest, low + (1.0 - low / 2.0) * _largest_step(strip) / whole
+    while high - low > EVENED:
         found = _greedy(strip, share * whole, allowed, len(fewest))
         if found is not None:
             best, high = found, share
@@ -150,8 +155,9 @@ def runs(strip: Strip, *, allowed: float) -> list[int]:
     return best
 
 
-EVEN = 4.0 / STEPS
-"""What a share may be over an even one so that places in 1/4096 can meet it."""
+def _largest_step(strip: Strip) -> float:
+    """Return by how much the area of a run may fall short of one that is asked for, as it ends in 1/4096, mm2."""
+    return float((np.diff(strip.area) / np.diff(strip.knots)).max()) / STEPS
 
 
 def _greedy(strip: Strip, most: float, allowed: float, count: int) -> list[int] | None:
@@ -169,23 +175,30 @@ def _greedy(strip: Strip, most: float, allowed: float, count: int) -> list[int] 
 def _farthest(strip: Strip, start: int, most: float, allowed: float, likely: int) -> int:
     """Return the end of the longest run from `start` that neither exceeds the area nor overlaps.
 
-    likely: how long that may be, 0 where nothing is known.  A run of many turns takes the cube of them to look at, so
-    the end is looked for from there on where the area would permit a much longer one.
+    likely: how long that may be, 0 where nothing is known.
     """
     spent = float(np.interp(start / STEPS, strip.knots, strip.area))
     last = int(np.interp(spent + most, strip.area, strip.knots) * STEPS)
 
+    @cache
     def good(end: int) -> bool:
         return end == start or doubled(run_outline(strip, start, end)) <= allowed
 
-    if likely and last - start > 2 * likely:
-        fits, fails = _around(good, start + likely, start, last)
-    else:
-        fits, fails = (last, last) if good(last) else (start, last)
+    # a run as long as the area permits is what evening out comes to
+    if likely and last - start <= 2 * likely and good(last):
+        return last
+    near = min(start + likely, last) if likely else _within(good, start, last)
+    fits, fails = _around(good, near, start, last)
     while fails - fits > 1:
         middle = (fits + fails) // 2
         fits, fails = (middle, fails) if good(middle) else (fits, middle)
     return fits
+
+
+def _within(good: Callable[[int], bool], first: int, last: int) -> int:
+    """Return the first end that is not good of some that are ever farther, or the last of all."""
+    ends = (first + (last - first) // share for share in LOOKED)
+    return next((end for end in ends if not good(end)), last)
 
 
 def _around(good: Callable[[int], bool], near: int, first: int, last: int) -> tuple[int, int]:

@@ -25,7 +25,7 @@ from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, Points2, Values, cross2, norm
 from stages.geometry.flat.flatmap import Development
 from stages.geometry.paths.arcpath import ArcPath
-from stages.geometry.ruled.turning import Run, chord_turning, equal_turns, is_fold, places, run_angle, runs
+from stages.geometry.ruled.turning import MOST_TURNS, Run, chord_turning, equal_turns, is_fold, places, run_angle, runs
 from stages.model.forming import BendSpec
 from stages.model.pattern import Mark
 from stages.model.report import Finding, Metric
@@ -33,8 +33,6 @@ from stages.model.surface import RuledSurface
 from stages.unroll.bent import Bent, across, radii_at
 from stages.unroll.zones import between_flats, is_pressed, zones
 
-MOST_HITS = 10_000
-"""More hits on one run are a rolled part."""
 ANGLE_LIMIT_DEG = 0.1
 """How far the sum of the hits may be from the turning of the surface: no press brake holds more."""
 
@@ -76,7 +74,7 @@ class Forming:
 def formed(bent: Bent, neutral: RuledSurface, development: Development, spec: BendSpec) -> Forming:
     """Return the bend lines of a part on the development of its neutral surface.
 
-    Raises NoSolutionError where no `MOST_HITS` hits keep the facet error asked for.
+    Raises NoSolutionError where no `MOST_TURNS` hits keep the angle or the facet error asked for.
     """
     lines = bend_lines(bent, neutral, development, spec)
     marks = tuple(_mark(line) for line in lines)
@@ -177,7 +175,7 @@ def _hits(bent: Bent, run: Run, spec: BendSpec) -> list[tuple[float, float, floa
 def _count_by_facet(bent: Bent, run: Run, wanted_mm: float) -> int:
     """Return the least number of hits found that keeps every facet within `wanted_mm`; its error falls as 1 / N^2."""
     count = max(ceil(abs(run_angle(run)) / LARGEST_STEP), 1)
-    while count <= MOST_HITS:
+    while count <= MOST_TURNS:
         reached = float(facet_errors(bent, run, count).max())
         if reached <= wanted_mm:
             return count

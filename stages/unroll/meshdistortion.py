@@ -11,7 +11,8 @@ import numpy as np
 from stages.geometry.arrays import Array, Numbers, Points2, Values, cross2, norm
 from stages.geometry.curves.refit import Refitted
 from stages.geometry.mesh.arap import Sheet, energy, strain_tensors, strains
-from stages.geometry.mesh.flat import MeshMap, by_side, resting
+from stages.geometry.mesh.flat import by_side, resting
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.topology import edges_of
 from stages.model.report import Metric, Where
 from stages.model.surface import MeshSurface

@@ -23,7 +23,7 @@ from stages.geometry.curves.plane import CircularArc, PlaneCurve
 from stages.geometry.curves.planespline import spline
 from stages.geometry.curves.refit import refitted
 from stages.geometry.flat.lying import lying
-from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.nearest import at
 from stages.model.features import CircleHole
 from stages.model.pattern import Contour, FlatPattern

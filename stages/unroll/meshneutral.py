@@ -14,10 +14,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stages.geometry.mesh.bending import MeshBends, SharpVertex, bends_of, parallel
+from stages.geometry.mesh.bending import bends_of, parallel
+from stages.geometry.mesh.bends import MeshBends, SharpVertex
 from stages.geometry.mesh.fit import fitted, stars
-from stages.geometry.mesh.flat import AT_REST, MeshMap, at_rest, edge_lengths
+from stages.geometry.mesh.flat import AT_REST, at_rest, edge_lengths
 from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.topology import edges_of
 from stages.model.kfactor import MIDDLE, k_at
 from stages.model.report import Evidence, Finding, Metric

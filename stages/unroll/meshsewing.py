@@ -10,7 +10,7 @@ import numpy as np
 from stages.geometry.arrays import Array, Numbers, Points2, Values, norm
 from stages.geometry.curves import contours
 from stages.geometry.mesh.arapkept import KEPT
-from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.topology import edge_numbers, edges_of
 from stages.model.report import Metric
 from stages.model.surface import MeshSurface

@@ -11,7 +11,6 @@ flattening: `unroll` may still refuse.
 import numpy as np
 
 from stages.errors import NoSolutionError
-from stages.geometry.mesh.fit import MOST_TRIANGLES
 from stages.model.report import Evidence, Metric, Outcome, StageReport, Where
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import WARP_LIMIT_DEG, Tolerances, class_by_warp
@@ -21,7 +20,6 @@ from stages.verify.branched import branched
 from stages.verify.crossing import crossings
 from stages.verify.examined import Examined, examine
 from stages.verify.findings import rejection, singular_findings
-from stages.verify.meshes import too_fine, verdict
 from stages.verify.sampled import Extreme
 
 __all__ = ["verify"]
@@ -71,6 +69,9 @@ def _strip(surface: RuledSurface, tol: Tolerances) -> Outcome[Certificate | None
 
 def _mesh(surface: MeshSurface, tol: Tolerances) -> Outcome[Certificate | None]:
     """Return the certificate of a mesh that was not recognised: judged by the map that it will be cut by."""
+    from stages.geometry.mesh.fit import MOST_TRIANGLES
+    from stages.verify.meshes import too_fine, verdict
+
     if len(surface.mesh.faces) > MOST_TRIANGLES:
         return Outcome(None, StageReport("verify", surface.part.name, (), (too_fine(surface),)))
     judged = verdict(surface, tol)

@@ -4,7 +4,8 @@ By the curvatures of the surface fitted to the vertices (`geometry.mesh.bending`
 mesh as the job's face says (`stages.model.sheetface`).  Sampled at the vertices: noise and creases sharpen it.
 """
 
-from stages.geometry.mesh.bending import MeshBends, bends_of
+from stages.geometry.mesh.bending import bends_of
+from stages.geometry.mesh.bends import MeshBends
 from stages.model.report import Finding, Metric, Where
 from stages.model.sheetface import Layers, mesh_layers
 from stages.model.surface import MeshSurface

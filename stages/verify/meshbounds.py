@@ -19,9 +19,10 @@ from stages.geometry.arrays import Array, ArrayValue, Indices, Points2, Values
 from stages.geometry.mesh.arap import Sheet, strain_tensors
 from stages.geometry.mesh.curvature import Regions, defects, means, regions, ruling_lengths, shares, spread
 from stages.geometry.mesh.fit import DEGREE, WIDE_DEGREE, Stars, SurfaceFit, fitted, stars
-from stages.geometry.mesh.flat import MeshMap, noise, resting
+from stages.geometry.mesh.flat import noise, resting
 from stages.geometry.mesh.lengths import chords, curved, mended
 from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.topology import Edges
 
 DEVIATIONS = 3.0

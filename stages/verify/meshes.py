@@ -23,7 +23,7 @@ import numpy as np
 
 from stages.errors import NoSolutionError
 from stages.geometry.mesh.fit import MOST_TRIANGLES
-from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.model.report import Finding, Metric, Where
 from stages.model.surface import MeshSurface, no_pairs
 from stages.model.tolerances import (
@@ -221,15 +221,24 @@ def _remedy(strained: Bound, tol: Tolerances) -> str:
 def _doubt(surface: MeshSurface, studied: Studied, bent: Bound, strained: Bound, tol: Tolerances) -> Finding:
     """Return why no verdict is possible, and the best class that the mesh permits one for."""
     permits = _class(bent.largest, strained.largest)
-    fit = studied.fit
-    cause = "noisy" if np.median(fit.coarser - NOISE * fit.residual) < 0.0 else "coarse"
+    fit, noise = studied.fit, studied.flat.noise_mm
+    known = np.isfinite(noise)
+    cause = "noisy" if known and np.median(fit.coarser - NOISE * fit.residual) < 0.0 else "coarse"
+    off = f"vertices lie {noise:.3g} mm off a smooth surface" if known else "too few vertices to fit a surface to"
     message = (
-        f"the mesh is too {cause} for a verdict at accept = {tol.accept!r}: vertices lie "
-        f"{studied.flat.noise_mm:.3g} mm off a smooth surface; equivalent warp between {bent.least * DEG:.3g} and "
-        f"{bent.largest * DEG:.3g} deg, strain between {strained.least:.3g} and {strained.largest:.3g}; "
+        f"the mesh is too {cause} for a verdict at accept = {tol.accept!r}: {off}; "
+        f"equivalent warp {_range(bent.least * DEG, bent.largest * DEG, ' deg')}, "
+        f"strain {_range(strained.least, strained.largest)}; "
         + (f"it permits accept = {permits!r}" if permits else "it permits none")
     )
     return Finding("inconclusive", message, True, _where(surface, bent))
+
+
+def _range(least: float, largest: float, unit: str = "") -> str:
+    """Return a range in words; one that nothing bounds is said by its least value alone."""
+    if not np.isfinite(largest):
+        return f"at least {least:.3g}{unit}"
+    return f"between {least:.3g} and {largest:.3g}{unit}"
 
 
 NOISE = 1.5

@@ -25,7 +25,6 @@ from stages.write.flavours import as_cut
 from stages.write.helpfigures import cuts_of_parts, help_figures
 from stages.write.helps import helped
 from stages.write.kerf import beam_patterns, offset_metrics
-from stages.write.patternfiles import pattern_files
 from stages.write.pictured import pictured
 from stages.write.readback import read
 from stages.write.remnants import remnant_drawings
@@ -79,8 +78,8 @@ def write(
     cutting = machine.of_file("cut/")
     of_beams = {pattern.part: pattern for pattern in beams}
     drawings += [helped(drawing, cutting) for drawing in cut_drawings(layouts, of_beams, cutting)]
-    shown = pictured(drawings, machine)
     drawings += remnant_drawings(layouts)
+    shown = pictured(drawings, machine)
     found = list(each(lambda number: made(drawings[number], by_part, machine), len(drawings)))
     files = tuple(CutFile(drawing.path, one.text) for drawing, one in zip(drawings, found, strict=True))
     report = reported(drawings, found)
@@ -95,6 +94,8 @@ def _written_patterns(
     patterns: Sequence[FlatPattern], layouts: Sequence[SheetLayout], machine: Machine
 ) -> Outcome[tuple[CutFile, ...]]:
     """Return pattern files instead of drawings; what a sheet leaves is no piece and is drawn as ever."""
+    from stages.write.patternfiles import pattern_files
+
     files, report = pattern_files(patterns, layouts, machine)
     drawings = remnant_drawings(layouts)
     rests = tuple(CutFile(drawing.path, dxf_text(drawing, REMNANTS)) for drawing in drawings)

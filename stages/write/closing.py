@@ -14,9 +14,6 @@ from itertools import pairwise
 from math import pi
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 from shapely import STRtree, linestrings
 
 from stages.geometry.arrays import Array, Numbers, Points2, cross2, norm, unit
@@ -122,6 +119,10 @@ def _ways(rests: Sequence[Owned], sides: Sequence[Owned]) -> list[Way]:
     every = [*rests, *sides]
     if not every:
         return []
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     ends = np.concatenate([path.vertices[[0, -1]] for path, _ in every])
     near = cKDTree(ends).query_pairs(MEET_MM, output_type="ndarray")
     links = coo_matrix((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(ends), len(ends)))

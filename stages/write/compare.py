@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from math import dist, fsum, inf
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import norm
@@ -178,6 +177,8 @@ def _unlike_outlines(closed: Closed, drawn: Sequence[ArcPath]) -> Iterator[str]:
         return
     if not drawn:
         return
+    from scipy.spatial import cKDTree
+
     near = cKDTree(manypaths.boxes(found)).query_ball_point(manypaths.boxes(drawn), MEET_MM, p=np.inf)
     for path, places in zip(drawn, near, strict=True):
         if not any(_is_same(found[place], path) for place in places):

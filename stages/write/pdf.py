@@ -64,9 +64,10 @@ def on_layer(number: int, content: str) -> str:
     return f"/OC /L{number} BDC\n{content}EMC\n"
 
 
-def line(x: float, y: float, to_x: float, to_y: float) -> str:
-    """Return a straight line."""
-    return f"{numbers((x, y))} m {numbers((to_x, to_y))} l S\n"
+def lines(ends: Array) -> str:
+    """Return straight lines, each from x, y to x, y in mm."""
+    rows = _rows(ends, 2)
+    return "".join(f"{start} m {end} l S\n" for start, end in zip(rows[::2], rows[1::2], strict=True))
 
 
 def text(label: Label) -> str:

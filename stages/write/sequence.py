@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon, STRtree, buffer, contains, linearrings, polygons, prepare
 
-from stages.geometry.arrays import Array, Mask
+from stages.geometry.arrays import Mask
 from stages.geometry.paths import manypaths
 from stages.geometry.paths.arcpath import ArcPath, polygon
 from stages.write.chains import Entity
@@ -94,7 +94,8 @@ def shared_order_faults(entities: Sequence[Entity], closed: Closed, beside_mm: f
     for place, entity in enumerate(entities):
         if entity.layer not in RANK or entity.layer == "CUT_OUTER" or entity.path is None:
             continue
-        around = grown.query(Polygon(_ring(entity.path)), predicate="covered_by").tolist()
+        (shape,) = _shapes([entity.path])
+        around = grown.query(shape, predicate="covered_by").tolist()
         owner = min(around, key=lambda one: regions[one].area, default=None)
         if owner is None or min(outlines[owner].entities) < place:
             yield f"{entity.kind} on {entity.layer} does not come before an outline that holds it"
@@ -119,9 +120,3 @@ def _whole(entities: Sequence[Entity]) -> list[Outline]:
 def _region(path: ArcPath) -> Polygon:
     """Return the region inside a path."""
     return Polygon(polygon(path, accuracy=POLYGON_MM))
-
-
-def _ring(path: ArcPath) -> Array:
-    """Return a ring of points that stands for the path; an open one runs there and back."""
-    points = polygon(path, accuracy=POLYGON_MM)
-    return points if path.closed and points.shape[0] > 2 else np.concatenate([points, points[::-1]])  # noqa: PLR2004

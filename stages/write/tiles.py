@@ -3,12 +3,15 @@
 Pages lie in rows and columns about the middle of the drawing, upright or across, whichever takes fewer; neighbours
 share a strip of `OVERLAP_MM`.  In the middle of that strip, at a quarter and at three quarters of its length, both of
 them show the same two crosses: laid on each other, the pages lie right.  Pages on which there is nothing are left out.
+
+Not for a drawing of more than `MOST_PAGES`.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
 
+import numpy as np
 from shapely import LineString, MultiPolygon, Polygon, STRtree, box
 
 from stages.geometry.paths.arcpath import ArcPath, polygon
@@ -25,9 +28,30 @@ SHARES = 0.25, 0.75
 LOOK_MM = 0.05
 """How near the polygons come to the paths by which it is seen whether a page shows anything."""
 
+MOST_PAGES = 500
+"""A ream, which is 23 m2 of A4: whoever draws more prints it from a roll."""
+
 LEAST_CORNERS = 3
 MIDDLE = 0.5
 Extent = tuple[float, float, float, float]
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """All pages of a size over a drawing: that of the paper, what each shows, how many, the lower left corner; mm."""
+
+    paper_mm: tuple[float, float]
+    window_mm: tuple[float, float]
+    rows: int
+    columns: int
+    first: Place
+
+    def corner(self, row: int, column: int) -> Place:
+        """Return the lower left corner of what a page shows of the drawing, mm; rows count from the top."""
+        width, height = self.window_mm
+        across, up = column - 1, self.rows - row
+        return self.first[0] + across * (width - OVERLAP_MM), self.first[1] + up * (height - OVERLAP_MM)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,58 +66,62 @@ class Tile:
 
 @dataclass(frozen=True, slots=True)
 class Tiling:
-    """Pages of one size: that of the paper, what each shows (mm), how many rows and columns, and those in use."""
+    """The pages of a grid that are in use."""
 
-    paper_mm: tuple[float, float]
-    window_mm: tuple[float, float]
-    rows: int
-    columns: int
+    grid: Grid
     tiles: tuple[Tile, ...]
-    crosses: tuple[tuple[float, float], ...]
 
 
-def tiling(extent: Extent, paths: Sequence[ArcPath], paper: Paper) -> Tiling:
-    """Return the pages that show some paths of that extent, from the top left on, row by row."""
+def tiling(extent: Extent, paths: Sequence[ArcPath], paper: Paper) -> Tiling | None:
+    """Return the pages that show some paths of that extent, from the top left on, row by row.
+
+    None if they are more than `MOST_PAGES`.  What is in one piece and spans r rows and c columns shows on r + c - 1 of
+    them or more: neighbours overlap, so that one step leads to a row or a column.  Beyond that it is not looked at.
+    """
+    grid = grid_of(extent, paper)
+    if grid.rows + grid.columns - 1 > MOST_PAGES:
+        return None
+    places = [(row, column) for row in range(1, grid.rows + 1) for column in range(1, grid.columns + 1)]
+    low = np.array([grid.corner(*place) for place in places])
+    windows = STRtree(box(*low.T, *(low + grid.window_mm).T))
+    seen = np.unique(windows.query([_seen(path) for path in paths], predicate="intersects")[1]).tolist()
+    if len(seen) > MOST_PAGES:
+        return None
+    shown = ((*places[i], *grid.corner(*places[i])) for i in seen)
+    return Tiling(grid, tuple(Tile(row, column, x, y) for row, column, x, y in shown))
+
+
+def grid_of(extent: Extent, paper: Paper) -> Grid:
+    """Return the pages over a drawing, upright or across, whichever are fewer."""
     width, height = PAPERS[paper]
     upright, across = (_grid(extent, size) for size in ((width, height), (height, width)))
-    grid = across if across.rows * across.columns < upright.rows * upright.columns else upright
-    seen = STRtree([_seen(path) for path in paths])
-    tiles = tuple(tile for tile in grid.tiles if seen.query(_window(tile, grid), predicate="intersects").size)
-    return Tiling(grid.paper_mm, grid.window_mm, grid.rows, grid.columns, tiles, tuple(_crosses(grid)))
+    return across if across.rows * across.columns < upright.rows * upright.columns else upright
 
 
-def _grid(extent: Extent, paper_mm: tuple[float, float]) -> Tiling:
+def _grid(extent: Extent, paper_mm: tuple[float, float]) -> Grid:
     """Return all pages of a size over a drawing, its middle in theirs."""
     window = paper_mm[0] - 2.0 * BORDER_MM, paper_mm[1] - 2.0 * BORDER_MM
-    step = window[0] - OVERLAP_MM, window[1] - OVERLAP_MM
     counts, first = list[int](), list[float]()
     for axis in (0, 1):
-        long = extent[axis + 2] - extent[axis]
-        count = max(ceil((long - OVERLAP_MM) / step[axis]), 1)
+        long, step = extent[axis + 2] - extent[axis], window[axis] - OVERLAP_MM
+        count = max(ceil((long - OVERLAP_MM) / step), 1)
         counts.append(count)
-        first.append(extent[axis] + MIDDLE * (long - (count * step[axis] + OVERLAP_MM)))
+        first.append(extent[axis] + MIDDLE * (long - (count * step + OVERLAP_MM)))
     columns, rows = counts
-    tiles = tuple(
-        Tile(row + 1, column + 1, first[0] + column * step[0], first[1] + (rows - 1 - row) * step[1])
-        for row in range(rows)
-        for column in range(columns)
-    )
-    return Tiling(paper_mm, window, rows, columns, tiles, ())
+    return Grid(paper_mm, window, rows, columns, (first[0], first[1]))
 
 
-def _crosses(grid: Tiling) -> Iterator[tuple[float, float]]:
-    """Yield the points that two neighbouring pages both show."""
+def crosses(tile: Tile, grid: Grid) -> Iterator[Place]:
+    """Yield the points that a page and its neighbours in the grid both show."""
     width, height = grid.window_mm
-    for tile in grid.tiles:
-        for share in SHARES:
-            if tile.column > 1:
-                yield tile.x + MIDDLE * OVERLAP_MM, tile.y + share * height
-            if tile.row < grid.rows:
-                yield tile.x + share * width, tile.y + MIDDLE * OVERLAP_MM
-
-
-def _window(tile: Tile, grid: Tiling) -> Polygon:
-    return box(tile.x, tile.y, tile.x + grid.window_mm[0], tile.y + grid.window_mm[1])
+    for column in (tile.column, tile.column + 1):
+        if 1 < column <= grid.columns:
+            x, y = grid.corner(tile.row, column)
+            yield from ((x + MIDDLE * OVERLAP_MM, y + share * height) for share in SHARES)
+    for row in (tile.row, tile.row - 1):
+        if 1 <= row < grid.rows:
+            x, y = grid.corner(row, tile.column)
+            yield from ((x + share * width, y + MIDDLE * OVERLAP_MM) for share in SHARES)
 
 
 def _seen(path: ArcPath) -> LineString | Polygon | MultiPolygon:

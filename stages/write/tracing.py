@@ -15,7 +15,6 @@ from dataclasses import replace
 from math import pi, radians
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from stages.geometry.arrays import Array, Points2, Vector2, norm
 from stages.geometry.curves.plane import CircularArc, PlaneCurve
@@ -133,6 +132,8 @@ def flagged(points: Points2, places: Array, within: float) -> tuple[bool, ...]:
     """Return which of the points are the nearest ones to places, shape (places, 2), as far as they are near."""
     flags = np.zeros(points.shape[0], dtype=bool)
     if places.size:
+        from scipy.spatial import cKDTree
+
         away, nearest = cKDTree(points).query(places)
         flags[nearest[away <= within]] = True
     return tuple(flags.tolist())

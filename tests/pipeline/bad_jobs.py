@@ -81,8 +81,8 @@ BAD: dict[str, tuple[str, list[str]]] = {
     "no part and no schema": (
         "",
         [
-            "job.toml:1:1: schema: missing (1 is needed)",
-            "job.toml:1:1: part: missing (an array of 1 to 10000 tables is needed)",
+            "job.toml:1:1: schema: missing (schema = 1 is needed)",
+            "job.toml:1:1: part: missing (an array of 1 to 10000 tables is needed; in TOML write [[part]] over each)",
         ],
     ),
     "duplicate names, upper and lower case alike, beside an error in another part": (

@@ -94,7 +94,7 @@ def test_a_job_whose_file_is_wrong_exits_3_without_a_cut_file(tmp_path: Path, mo
     def refused(*_: object) -> tuple[tuple[()], tuple[Finding, ...]]:
         return (), (Finding("gap", "planted", fatal=True),)
 
-    monkeypatch.setattr("pipeline.certified.certify_contours", refused)
+    monkeypatch.setattr("stages.nest.legal.files.certify_contours", refused)
     with pytest.raises(SystemExit) as bad:
         main(["run", str(job), "-o", str(tmp_path / "bad"), "--quiet"])
     assert bad.value.code == 3

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.report.html import data_block, part_texts, report_html
+from pipeline.report.html import data_block, part_texts, report_html, summary
 from pipeline.report.meanings import MEANINGS
-from tests.browser.pages import HOSTILE, PLATE, REFUSED, report, view
+from tests.browser.pages import HOSTILE, PLATE, REFUSED, metric, report, view
 
 ROOT = Path(__file__).parents[2]
 MAKERS = {"Metric", "_at", "limit_metric", "_area"}
@@ -59,6 +59,35 @@ def test_the_page_has_the_numbers_of_the_report() -> None:
     assert [json.loads(part)["report"] for part in block["parts"]] == report()["parts"]
     assert [json.loads(part)["view"] for part in block["parts"]] == view()["parts"]
     assert [row["failed"] for row in block["rows"]] == [0, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("metrics", "codes", "failed"),
+    [
+        (["max_warp_deg"], ["not-developable"], 1),
+        (["outer_fibre_strain"], ["bend-radius", "bend-strain"], 2),
+        (["outer_fibre_strain"], [], 1),
+        (["overlap_mm2", "max_strain"], ["flat-overlap"], 2),
+        ([], ["no-area", "no-area"], 2),
+        ([], [], 0),
+    ],
+)
+def test_what_failed_once_counts_once(metrics: list[str], codes: list[str], failed: int) -> None:
+    """A number past its limit and the finding that tells of it in words are one reason, in one stage."""
+    found = [{"code": code, "fatal": True} for code in codes] + [{"code": "note", "fatal": False}]
+    stages = [
+        {"metrics": [metric(name, 2.0, 1.0, passed=False) for name in metrics], "findings": found},
+        {"metrics": [metric("max_warp_deg", 0.0, 1.0)], "findings": []},
+    ]
+    assert summary({"name": "a", "quantity": 1, "class": "rejected", "stages": stages})["failed"] == failed
+
+
+def test_a_number_is_no_reason_less_for_a_finding_of_another_stage() -> None:
+    stages = [
+        {"metrics": [metric("max_strain", 2.0, 1.0, passed=False)], "findings": []},
+        {"metrics": [], "findings": [{"code": "strain", "fatal": True}]},
+    ]
+    assert summary({"name": "a", "quantity": 1, "class": "rejected", "stages": stages})["failed"] == 2
 
 
 def test_the_page_names_no_address_to_load_from() -> None:

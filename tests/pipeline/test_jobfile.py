@@ -90,6 +90,46 @@ def test_a_syntax_error_has_its_place(tmp_path: Path, name: str, text: str, star
     assert line.startswith(start)
 
 
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("radius0 = 40 mm", 'a number with its unit stands in quotes: "40 mm"'),
+        ("at = [1/8 in, 3]", 'a number with its unit stands in quotes: "1/8 in"'),
+        ("radius0 = 1,5", "decimals come after a point: 1.5"),
+        ("name = bow", 'a text stands in quotes: "bow"'),
+        ("c = { name = left bow, x = 1 }", 'a text stands in quotes: "left bow"'),
+        ("name = = 3", ""),
+        (f"name = {'a ' * 10_000_000}", 'a text stands in quotes: "a a'),
+    ],
+)
+def test_a_syntax_error_says_what_is_most_likely_meant(tmp_path: Path, line: str, hint: str) -> None:
+    with pytest.raises(BadInputError) as caught:
+        read(write_job(tmp_path, f"schema = 1\n{line}\n"[:LARGEST_FILE]))
+    (problem,) = caught.value.problems
+    assert problem.line == 2
+    assert problem.hint.startswith(hint)
+    assert bool(problem.hint) is bool(hint)
+
+
+def test_a_file_that_is_not_there_is_told_with_the_one_that_may_be_meant(tmp_path: Path) -> None:
+    file = write_job(tmp_path, PLATE, "bracket.toml")
+    for asked, hint in [
+        (tmp_path / "braket.toml", f"did you mean {file}?"),
+        (tmp_path, f"did you mean {file}?"),
+        (tmp_path / "quite" / "another.toml", f"there is no folder {tmp_path / 'quite'}"),
+        (tmp_path / "quite-another", ""),
+    ]:
+        with pytest.raises(BadInputError) as caught:
+            read(asked)
+        assert caught.value.problems[0].hint == hint
+
+
+def test_one_table_where_several_belong_is_told_how_they_are_written(tmp_path: Path) -> None:
+    (told,) = problems(tmp_path, PLATE.replace("[[part]]", "[part]"))
+    assert "part: a table where an array belongs (" in told
+    assert told.endswith("; in TOML write [[part]] over each)")
+
+
 def test_deep_chains_of_curves_are_refused(tmp_path: Path) -> None:
     curve = '{"chain":[' * 400 + '{"line":[[0,0],[1,0]]}' + "]}" * 400
     text = '{"schema":1,"part":[{"name":"a","surface":{"kind":"flat","outline":' + curve + "}}]}"

@@ -1,6 +1,8 @@
 """The lines of the terminal: which figures of a stage are shown, and that nothing is said twice."""
 
-from pipeline.report.lines import step_line, trouble_lines
+from pathlib import Path
+
+from pipeline.report.lines import REMEDIES, step_line, trouble_lines
 from pipeline.run import Step
 from stages.model.report import Finding, Metric, StageReport
 
@@ -26,3 +28,15 @@ def test_the_warp_of_a_refused_mesh_is_told_once() -> None:
     report = StageReport("verify", "shell", (Metric("equivalent_warp_deg", 0.5, "deg", limit=0.1),), (told,))
     (line,) = trouble_lines(report)
     assert line.startswith("  equivalent warp 0.5 deg")
+
+
+def test_a_remedy_is_that_of_a_metric_or_a_finding_that_there_is() -> None:
+    texts = "".join(file.read_text("utf-8") for file in (Path(__file__).parents[2] / "stages").glob("**/*.py"))
+    assert [name for name in REMEDIES if f'"{name}"' not in texts] == []
+
+
+def test_a_strain_past_its_limit_is_told_once() -> None:
+    told = Finding("bend-strain", "the outer fibre stretches by 30.000%, the material allows 25.000%", True)
+    report = StageReport("verify", "bow", (Metric("outer_fibre_strain", 0.3, limit=0.25),), (told,))
+    (line,) = trouble_lines(report)
+    assert line == f"  {told.message}; {REMEDIES['bend-strain']}"

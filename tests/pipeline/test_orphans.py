@@ -30,7 +30,7 @@ solve(request(300.0), told)
 READER = """
 import sys
 from pipeline.cad.files import read_guarded
-child = "from pipeline import cadchild; import sys, time; cadchild.read = lambda *_: time.sleep(300); cadchild.main()"
+child = "from pipeline.cad import child; import sys, time; child.read = lambda *_: time.sleep(300); child.main()"
 print("begun", flush=True)
 read_guarded((sys.executable, "-c", child, "file", "step"), 300.0)
 """

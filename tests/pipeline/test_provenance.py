@@ -54,6 +54,17 @@ def test_a_tolerance_is_that_of_planish_unless_the_job_says_otherwise(
     assert f"job file, {setting.split('=', maxsplit=1)[0]}" in changed.source
 
 
+def test_a_tolerance_that_the_job_gives_is_its_own_even_where_it_is_the_default(tmp_path: Path) -> None:
+    given = '[tolerance]\naccept = "fabrication"\nchord = 0.05\n'
+    stated, left = job(tmp_path, PLATE + given, "tolerance.join=0.01"), job(tmp_path, PLATE)
+    keys = {"chord": "chord", "join": "join", "max_warp_deg": "accept", "max_strain": "accept"}
+    for name, key in keys.items():
+        assert limit(stated, name).value == limit(left, name).value
+        assert limit(stated, name).source.endswith(f"job file, tolerance.{key}")
+        assert limit(left, name).source.endswith("default of planish")
+    assert stated.digest == left.digest
+
+
 def test_every_limit_that_a_metric_is_held_against_is_among_the_sources(tmp_path: Path) -> None:
     """Whatever limit a report shows stands in its list of limits, with the same value."""
     cylinder = '[[part]]\nname = "bow"\n[part.surface]\nkind = "cone"\nradius0 = 40\nradius1 = 40\nheight = 50\n'

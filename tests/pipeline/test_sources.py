@@ -130,11 +130,16 @@ def test_holes_are_all_closed_contours_of_their_layer(tmp_path: Path) -> None:
 REFUSED: dict[str, tuple[Callable[[Modelspace], object], str]] = {
     "an open outline": (
         lambda space: space.add_line((0, 0), (1, 1), dxfattribs=LAYER),
-        "the curve from (0, 0) to (1, 1) mm is open (close the contour in the drawing)",
+        "the curve from (0, 0) to (1, 1) mm is open, its ends 1.414 mm apart (close the contour in the drawing)",
     ),
     "two curves": (
         lambda space: [space.add_circle((x, 0), 1, dxfattribs=LAYER) for x in (0, 9)],
-        "2 separate curves where one belongs (give each a layer of its own, or make their ends meet)",
+        "2 separate curves where one belongs (give each a layer of its own, or make their ends meet within 0.01 mm)",
+    ),
+    "lines that nearly meet": (
+        lambda space: [space.add_line(a, b, dxfattribs=LAYER) for a, b in [((0, 0), (9, 0)), ((9.03, 0), (20, 9))]],
+        "2 separate curves where one belongs: the nearest ends are 0.03 mm apart (give each a layer of its own, or "
+        "make their ends meet within 0.01 mm)",
     ),
     "branching lines": (
         lambda space: [space.add_line((0, 0), end, dxfattribs=LAYER) for end in [(1, 0), (0, 1), (1, 1)]],

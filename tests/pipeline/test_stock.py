@@ -139,6 +139,10 @@ BAD_STOCK = {
         HIDE.replace('kind = "hide"', 'kind = "roll"'),
         "stock[0].outline: a roll has no outline (give its width, across",
     ),
+    "no room across": (
+        '[[stock]]\nid = "a"\nwidth = 1000\nheight = 20\n' + "edge_gap = 15\n",
+        "stock[0].edge_gap: 15 mm leaves no room",
+    ),
     "no room": (ROLL + "edge_gap = 750\n", "stock[0].edge_gap: 750 mm leaves no room"),
     "layers of no file": (ROLL + "layers = {}\n", "stock[0].layers: without a file"),
     "an entry of no file": (ROLL + 'entry = "a"\n', "stock[0].entry: without a file"),

@@ -96,7 +96,7 @@ def test_corners_that_fall_together_are_one(job: JobResult) -> None:
 
 
 def test_a_formed_cone_is_as_large_as_its_circle_and_its_height(parts: dict[str, dict]) -> None:
-    assert parts["cone"]["formed"]["evidence"] == "sampled"
+    assert parts["cone"]["formed"]["evidence"] == "proved"
     assert_near(parts["cone"]["formed"]["size_mm"], (20.0, 20.0, 15.0), bound=1e-9, why=LAST_DIGITS)
     assert parts["plate"]["formed"] is None
 

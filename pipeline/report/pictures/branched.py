@@ -40,20 +40,13 @@ def drawn(face: RuledSurface) -> tuple[Points3, list[Points3]]:
     """Return the corners of the triangles of a face, three each, and its loops, mm."""
     if face.trim is None:
         raise ValueError("a face of a branched surface has no trim")
-    strip = _strip(face)
+    strip = strip_of(face)
     rings = _rings(face.trim)
     corners = np.concatenate(list(_triangles(rings, strip.knots)))
     return points(strip, *corners.T), [points(strip, *ring.T) for ring in rings]
 
 
-def outline(face: RuledSurface) -> Points3:
-    """Return points of the outer loop of a trimmed face, mm."""
-    if face.trim is None:
-        raise ValueError("a face without a trim has no loops")
-    return points(_strip(face), *_rings(face.trim)[0].T)
-
-
-def _strip(face: RuledSurface) -> Strip:
+def strip_of(face: RuledSurface) -> Strip:
     """Return a face with the v at which its patches begin and end."""
     return Strip(face.patches, np.array([*(float(low) for low, _ in face.spans), float(face.spans[-1][1])]))
 

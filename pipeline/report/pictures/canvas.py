@@ -7,7 +7,6 @@ pixels only: the same drawing gives the same bytes.
 Limits: type is DejaVu Sans, which comes with matplotlib.  Signs that it lacks (Chinese, say) are shown as boxes.
 """
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from stages.geometry.arrays import Array, Points2, norm, unit
+from stages.geometry.arrays import Array, Points2, Vector3, norm, unit
 
 if TYPE_CHECKING:
     from matplotlib.path import Path
@@ -250,14 +249,6 @@ def shortened(words: str, most: int) -> str:
     return words[:head] + ELLIPSIS + (words[-tail:] if tail else "")
 
 
-def wrapped(lines: Sequence[str], signs: int, most: int) -> list[str]:
-    """Return the lines broken at `signs`, at most `most` of them, the last one saying what is left out."""
-    broken = [part for line in lines for part in textwrap.wrap(line.strip(), signs, subsequent_indent="    ") or [""]]
-    if len(broken) <= most:
-        return broken
-    return [*broken[: most - 1], f"{ELLIPSIS} and {len(broken) - most + 1} more lines: see the report"]
-
-
 def length_text(mm: float) -> str:
     """Return a length without unit, to a share that can be measured: 3 decimals below 10 mm, 1 above 1 m."""
     decimals = 3 if mm < FINE_MM else 2 if mm < COARSE_MM else 1
@@ -295,6 +286,14 @@ def caption(canvas: Canvas, box: Box, name: str, more: str) -> None:
     """Write what a view shows into its upper left corner, in two lines."""
     canvas.text((box.left + 0.02, box.top - 0.12), name, 9.5, INK, LEFT)
     canvas.text((box.left + 0.02, box.top - 0.3), more, 8.0, GREY, LEFT)
+
+
+def size_text(size_mm: Vector3 | None) -> str:
+    """Return how large a formed part is along its axes; nothing where that is not known."""
+    if size_mm is None:
+        return ""
+    words = "   ".join(f"{axis} {length_text(mm)}" for axis, mm in zip("xyz", size_mm.tolist(), strict=True))
+    return f"extent  {words} mm"
 
 
 LEFT: tuple[HAlign, VAlign] = ("left", "center")

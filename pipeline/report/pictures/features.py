@@ -73,6 +73,15 @@ def flat_net(shape: Net, pattern: FlatPattern) -> Array | None:
 
 def looked_up(shape: Net, flat: Array, points: Points2) -> Array:
     """Return x, y, z and the row and column in the net of points of the pattern, shape (k, 5)."""
+    blocks = [points[first : first + AT_ONCE] for first in range(0, len(points), AT_ONCE)]
+    return np.concatenate([_looked_up(shape, flat, block) for block in blocks])
+
+
+AT_ONCE = 2000
+"""Points that are held against all rulings together: a few MB."""
+
+
+def _looked_up(shape: Net, flat: Array, points: Points2) -> Array:
     start, ruling = flat[:, 0], flat[:, -1] - flat[:, 0]
     away = points[:, None] - start[None]
     reach = np.maximum(np.sum(ruling**2, axis=1), np.finfo(float).tiny)

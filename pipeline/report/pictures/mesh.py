@@ -6,11 +6,11 @@ their distance.
 
 import numpy as np
 
-from pipeline.report.pictures.canvas import BLUE, Box, Canvas, caption, fitted, length_text, scale_bar
+from pipeline.report.pictures.canvas import BLUE, Box, Canvas, caption, fitted, scale_bar, size_text
 from pipeline.report.pictures.net import best_view
 from pipeline.report.pictures.surface import MARGINS, SHADE, triad
 from pipeline.report.shades import BACK_RGB, FRONT_RGB, LIGHT
-from stages.geometry.arrays import Array, Points3, cross3, dot, norm, unit
+from stages.geometry.arrays import Array, Points3, Vector3, cross3, dot, norm, unit
 from stages.model.surface import MeshSurface
 
 EDGE_WIDTH = 1.4
@@ -28,9 +28,16 @@ def mesh_sight(surface: MeshSurface, frame: Points3) -> tuple[float, float]:
 
 
 def draw_mesh(
-    canvas: Canvas, box: Box, surface: MeshSurface, frame: Points3, *, paint: Array | None = None, legend: str = ""
+    canvas: Canvas,
+    box: Box,
+    surface: MeshSurface,
+    frame: Points3,
+    *,
+    size_mm: Vector3 | None,
+    paint: Array | None = None,
+    legend: str = "",
 ) -> None:
-    """Draw the formed mesh with axes, scale and extent; paint: colours of its triangles, and what they show."""
+    """Draw the formed mesh with axes, scale and size; paint: colours of its triangles, and what they show."""
     seen = surface.mesh.vertices @ frame.T
     fit = fitted(seen[:, :2], box.inset(*MARGINS))
     corners = seen[surface.mesh.faces]
@@ -45,9 +52,7 @@ def draw_mesh(
     canvas.lines([fit.place(seen[np.append(loop, loop[:1]), :2]) for loop in surface.loops], BLUE, EDGE_WIDTH)
     triad(canvas, np.array([box.left + 0.5, box.bottom + 0.42]), frame)
     scale_bar(canvas, box.right - 0.3, box.bottom + 0.28, fit.scale, min(1.4, box.width / 4.0))
-    extent = np.ptp(surface.mesh.vertices, axis=0)
-    words = "   ".join(f"{axis} {length_text(mm)}" for axis, mm in zip("xyz", extent, strict=True))
-    caption(canvas, box, f"Formed surface{legend}", f"extent  {words} mm")
+    caption(canvas, box, f"Formed surface{legend}", size_text(size_mm))
 
 
 def _areas(corners: Array) -> Points3:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.report.formedsize import formed_size
 from pipeline.report.pictures.branched import as_mesh
 from pipeline.report.pictures.canvas import (
     GREY,
@@ -25,17 +26,18 @@ from pipeline.report.pictures.canvas import (
     own_settings,
     scale_bar,
     shortened,
-    wrapped,
 )
 from pipeline.report.pictures.edges import side_area
 from pipeline.report.pictures.features import drawn_on
 from pipeline.report.pictures.flat import Room, compound, draw_pattern, pattern_room
 from pipeline.report.pictures.mesh import draw_mesh, mesh_sight, mesh_view
 from pipeline.report.pictures.net import net, view_direction
+from pipeline.report.pictures.notes import in_columns, wrapped
 from pipeline.report.pictures.sheet import sheet_picture
 from pipeline.report.pictures.strain import draw_scale, strain_colours
 from pipeline.report.pictures.surface import MARGINS, draw_surface, sight
-from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.arrays import Vector3
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.model.pattern import FlatPattern
 from stages.model.surface import BranchedSurface, MeshSurface, Plate, RuledSurface, Surface
 from stages.model.tolerances import STRAIN_LIMIT, Class
@@ -81,12 +83,14 @@ def part_picture(
     with own_settings():
         canvas = Canvas(WIDTH, HEIGHT)
         shown = as_mesh(surface) if isinstance(surface, BranchedSurface) else surface
+        found = formed_size(surface)
+        size_mm = None if found is None else found[0]
         _title(canvas, shown, pattern, reached)
         if pattern is None:
-            _rejected(canvas, shown, notes, worst_v)
+            _rejected(canvas, shown, notes, worst_v, size_mm)
         else:
             strained = None if flat is None or reached not in STRAINED else (flat, STRAIN_LIMIT[STRAINED[reached]])
-            _accepted(canvas, shown, pattern, notes, worst_v, strained=strained)
+            _accepted(canvas, shown, pattern, notes, worst_v, strained=strained, size_mm=size_mm)
         return canvas.png()
 
 
@@ -125,12 +129,12 @@ def _accepted(
     worst_v: float | None,
     *,
     strained: tuple[MeshMap, float] | None,
+    size_mm: Vector3 | None,
 ) -> None:
-    lines = wrapped(notes, NOTE_SIGNS, NOTE_LINES) if notes else []
-    rows = -(-len(lines) // 2)
-    bottom = MARGIN + LINE * rows
-    _notes(canvas, lines[:rows], MARGIN, bottom - 0.05, 7.5)
-    _notes(canvas, lines[rows:], WIDTH / 2.0, bottom - 0.05, 7.5)
+    columns = in_columns(wrapped(notes, NOTE_SIGNS, NOTE_LINES) if notes else [])
+    bottom = MARGIN + LINE * len(max(columns, key=len))
+    for lines, left in zip(columns, (MARGIN, WIDTH / 2.0), strict=True):
+        _notes(canvas, lines, left, bottom - 0.05, 7.5)
     page = Box(MARGIN, bottom, WIDTH - MARGIN, HEIGHT - HEAD - 0.05)
     if isinstance(surface, Plate):
         rooms = {turned: pattern_room(pattern, turned=turned) for turned in (False, True)}
@@ -141,17 +145,17 @@ def _accepted(
         seen_from = mesh_view(surface)
         plan = arrangement(page, mesh_sight(surface, seen_from), pattern)
         if strained is None:
-            draw_mesh(canvas, plan.formed, surface, seen_from)
+            draw_mesh(canvas, plan.formed, surface, seen_from, size_mm=size_mm)
         else:
             paint = strain_colours(surface, *strained)
-            draw_mesh(canvas, plan.formed, surface, seen_from, paint=paint, legend=STRAIN_LEGEND)
+            draw_mesh(canvas, plan.formed, surface, seen_from, size_mm=size_mm, paint=paint, legend=STRAIN_LEGEND)
             draw_scale(canvas, plan.formed, strained[1])
         draw_pattern(canvas, plan.flat, pattern, plan.room)
         return
     shape = net(surface, worst_v)
     frame = view_direction(shape)
     plan = arrangement(page, sight(shape, frame), pattern)
-    draw_surface(canvas, plan.formed, shape, frame, drawn_on(shape, pattern))
+    draw_surface(canvas, plan.formed, shape, frame, size_mm=size_mm, features=drawn_on(shape, pattern))
     draw_pattern(canvas, plan.flat, pattern, plan.room, worst_v)
 
 
@@ -196,15 +200,17 @@ def _shown_length(room: Box, extent: tuple[float, float]) -> float:
     return scale * max(extent)
 
 
-def _rejected(canvas: Canvas, surface: Shown, notes: Sequence[str], worst_v: float | None) -> None:
+def _rejected(
+    canvas: Canvas, surface: Shown, notes: Sequence[str], worst_v: float | None, size_mm: Vector3 | None
+) -> None:
     """Draw the formed surface, and the reasons in a column on the right."""
     left = WIDTH - MARGIN - COLUMN
     box = Box(MARGIN, MARGIN, left - 0.15, HEIGHT - HEAD - 0.05)
     if isinstance(surface, RuledSurface):
         shape = net(surface, worst_v)
-        draw_surface(canvas, box, shape, view_direction(shape))
+        draw_surface(canvas, box, shape, view_direction(shape), size_mm=size_mm)
     elif isinstance(surface, MeshSurface):
-        draw_mesh(canvas, box, surface, mesh_view(surface))
+        draw_mesh(canvas, box, surface, mesh_view(surface), size_mm=size_mm)
     else:
         _plain_plate(canvas, box, surface)
     canvas.text((left, HEIGHT - HEAD - 0.35), "REJECTED", 22.0, VERMILLION, ("left", "center"), bold=True)

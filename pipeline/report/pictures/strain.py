@@ -12,7 +12,8 @@ import numpy as np
 from pipeline.report.pictures.canvas import BLUE, GREY, VERMILLION, Box, Canvas
 from stages.geometry.arrays import Array, Values
 from stages.geometry.mesh.arap import strain_tensors
-from stages.geometry.mesh.flat import MeshMap, resting
+from stages.geometry.mesh.flat import resting
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.topology import edges_of
 from stages.model.surface import MeshSurface
 

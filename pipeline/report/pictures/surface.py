@@ -26,14 +26,14 @@ from pipeline.report.pictures.canvas import (
     arrow,
     caption,
     fitted,
-    length_text,
     scale_bar,
+    size_text,
 )
 from pipeline.report.pictures.features import Drawn
 from pipeline.report.pictures.names import write_names
 from pipeline.report.pictures.net import Net, normals
 from pipeline.report.shades import BACK_RGB, FRONT_RGB, LIGHT
-from stages.geometry.arrays import Array, Indices, Points2, Points3, Values, norm, unit
+from stages.geometry.arrays import Array, Indices, Points2, Points3, Values, Vector3, norm, unit
 
 SHADE = 0.32
 """How much darker a face is that the light does not meet."""
@@ -162,8 +162,10 @@ MARGINS = (0.6, 0.8, 0.6, 0.7)
 """Around the surface for labels, axes and scale, inches: left, bottom, right, top."""
 
 
-def draw_surface(canvas: Canvas, box: Box, shape: Net, frame: Points3, features: Sequence[Drawn] = ()) -> None:
-    """Draw the formed surface with the names of its edges, axes, scale and extent."""
+def draw_surface(
+    canvas: Canvas, box: Box, shape: Net, frame: Points3, *, size_mm: Vector3 | None, features: Sequence[Drawn] = ()
+) -> None:
+    """Draw the formed surface with the names of its edges, axes, scale and size."""
     fit = fitted(outline_points(shape, frame), box.inset(*MARGINS))
     faces, edges = paintings(shape, frame, features)
     paint(canvas, faces + edges, fit)
@@ -171,9 +173,7 @@ def draw_surface(canvas: Canvas, box: Box, shape: Net, frame: Points3, features:
     write_names(canvas, shape, frame, fit, COLOURS)
     triad(canvas, np.array([box.left + 0.5, box.bottom + 0.42]), frame)
     scale_bar(canvas, box.right - 0.3, box.bottom + 0.28, fit.scale, min(1.4, box.width / 4.0))
-    extent = np.ptp(shape.points.reshape(-1, 3), axis=0)
-    words = "   ".join(f"{axis} {length_text(mm)}" for axis, mm in zip("xyz", extent, strict=True))
-    caption(canvas, box, "Formed surface", f"extent  {words} mm")
+    caption(canvas, box, "Formed surface", size_text(size_mm))
 
 
 def _ghosts(canvas: Canvas, edges: Sequence[Painting], fit: Fit) -> None:

@@ -17,7 +17,7 @@ from pipeline.report.pictures.net import Net
 from pipeline.report.pictures.strain import vertex_strains
 from pipeline.report.view.arrays import encoded_array
 from stages.geometry.arrays import Array, Indices
-from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.ruled.ruled import curvature
 from stages.model.sheetface import about
 from stages.model.surface import MeshSurface, RuledSurface

@@ -22,7 +22,7 @@ from pipeline.report.view.lines import Lines, lines_on, trim_rings
 from pipeline.run import PartRun
 from stages.geometry.arrays import Array, norm
 from stages.geometry.flat.mapped import FlatStrip, MappedEdge
-from stages.geometry.mesh.flat import MeshMap
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.ruled.ruled import at
 from stages.model.pattern import FlatPattern
 from stages.model.surface import BranchedSurface, Certificate, MeshSurface, RuledSurface

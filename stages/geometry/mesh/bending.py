@@ -9,44 +9,16 @@ The parallel mesh has its vertices moved along the fitted normals.  Parallel sur
 along the same rulings; the error is the distance times that of the normals.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from stages.geometry.arrays import Values
 from stages.geometry.mesh.across import ways
+from stages.geometry.mesh.bends import MeshBends, SharpVertex
 from stages.geometry.mesh.curvature import shares
 from stages.geometry.mesh.fit import SurfaceFit, fitted_at
 from stages.geometry.mesh.lengths import UNEXPLAINED, chords
 from stages.geometry.mesh.mesh import Mesh
 from stages.geometry.mesh.topology import Edges
-
-
-@dataclass(frozen=True, slots=True)
-class SharpVertex:
-    """The vertex where a mesh bends most one way: its curvature along the bend, 1/mm, and its place."""
-
-    curvature: float
-    vertex: int
-    place: tuple[float, float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class MeshBends:
-    """Where a mesh bends most towards its normals and away from them, None where it does not; and how much it does.
-
-    turned: integrals of both curvatures over the mesh, mm: angle times width.
-    """
-
-    towards: SharpVertex | None
-    away: SharpVertex | None
-    turned: tuple[float, float]
-
-    @property
-    def ways(self) -> tuple[tuple[float, SharpVertex], ...]:
-        """Return the ways in which it bends, +1 towards its normals, with the vertex where it bends most."""
-        both = ((1.0, self.towards), (-1.0, self.away))
-        return tuple((sign, sharp) for sign, sharp in both if sharp is not None)
 
 
 def bends_of(mesh: Mesh, edges: Edges, fit: SurfaceFit) -> MeshBends:

@@ -10,42 +10,18 @@ For discs, holes allowed.  A developable mesh comes out at rest; any other with 
 strains.
 """
 
-from dataclasses import dataclass
-from typing import Literal
-
 import numpy as np
 
-from stages.geometry.arrays import Array, ArrayValue, Points2, Values
+from stages.geometry.arrays import Array, Values
 from stages.geometry.mesh.arap import Sheet, sheet, strains
 from stages.geometry.mesh.arapkept import settled_with
 from stages.geometry.mesh.fit import SurfaceFit, fitted, stars
 from stages.geometry.mesh.intrinsic import conformal, laid
 from stages.geometry.mesh.lengths import chords, curved, mended
 from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.meshmap import Kind, MeshMap
 from stages.geometry.mesh.ties import Ties, no_ties
 from stages.geometry.mesh.topology import Edges, edges_of
-
-Kind = Literal["curved", "chord"]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class MeshMap(ArrayValue):
-    """A mesh in the plane.
-
-    positions: of the vertices, mm.
-    lengths: of the edges in the order of `edges_of`, mm.
-    strains: principal strains of every triangle against these lengths, shape (m, 2), the larger first.
-    noise_mm: median of the standard deviations of the heights of vertices over the fits around them.
-    kind: whether the lengths are those on the fitted surface or those of the chords.
-    reached_mm: how far the last step moved a vertex at most.
-    """
-
-    positions: Points2
-    lengths: Array
-    strains: Array
-    noise_mm: float
-    kind: Kind
-    reached_mm: float
 
 
 def flattened(mesh: Mesh, *, accuracy: float) -> MeshMap:

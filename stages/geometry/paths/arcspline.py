@@ -20,7 +20,6 @@ directions are complex numbers here.  Chains of arcs through data: [1]_.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, ArrayValue, Mask, Points2, Values
@@ -183,6 +182,8 @@ def _least_step(
 
     d miss_k = a_k dy_k + b_k dy_(k+1) - dphi_k - dphi_(k+1); the weighted normal matrix is tridiagonal.
     """
+    from scipy.linalg import solveh_banded
+
     across = 1j * chord / np.abs(chord)
     lever = 2.0 / np.abs(chord)
     a = -lever * (normal[:-1] * across.conj()).real

@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from shapely import STRtree, box, linestrings
 
 from stages.geometry.arrays import Array, ArrayValue, Indices, Numbers, Points2, Values, dot, norm, unit
@@ -143,6 +141,9 @@ def _continued(single: Sequence[Middle], strip: Strip) -> list[Middle]:
     """Return the middles with those joined that lie on one line and no farther apart than the strip is wide."""
     if not single:
         return []
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     drawn = linestrings([line.ends for line in single])
     one, other = STRtree(drawn).query(drawn, predicate="dwithin", distance=strip.apart_mm + 2.0 * strip.tolerance_mm)
     meet = [i < j and _continues(single[i].ends, single[j].ends, strip) for i, j in zip(one, other, strict=True)]

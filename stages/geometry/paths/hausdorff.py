@@ -2,8 +2,8 @@
 
 Edges to path: dense exact points of the edges, each with its exact distance to the pieces near it.  Path to edges:
 dense exact points of the path, each with its distance to the polygon of the edges' points.  Pieces and chords near a
-point are found through a k-d tree of points on them.  Only a few candidates are looked at, so a distance may come out
-too large, never too small; where it comes out above the accuracy, all are looked at.
+point are found through points on them, by a k-d tree where they are many.  Only a few candidates are looked at, so a
+distance may come out too large, never too small; where it comes out above the accuracy, all are looked at.
 
 Both samplings are dense enough that no arc rises over its chord by more than `DENSITY` of the accuracy.  A chord point
 is that close to a point of its curve, and along a chord the distance to the other curve bends no faster than those
@@ -16,9 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
-from stages.geometry.arrays import Array, Indices, Points2, Values, dot, norm
+from stages.geometry.arrays import Array, Indices, Numbers, Points2, Values, dot, norm
 from stages.geometry.flat.sampling import Resolved, dense_points
 from stages.geometry.paths.arcpath import ArcPath, along, distances, piece_count, radii, split, sweeps
 from stages.geometry.paths.overlap import QUARTER_BULGE
@@ -26,7 +25,11 @@ from stages.geometry.paths.overlap import QUARTER_BULGE
 DENSITY = 0.01
 HEIGHTS = 3.0
 CANDIDATES = 3
-"""Tree points whose pieces are tried for each query; at a joint the two neighbours are among them."""
+"""Points whose pieces are tried for each query; at a joint the two neighbours are among them."""
+
+FEW_PAIRS = 100_000
+"""Up to so many pairs of queries and points all are compared: a few ms, where loading the tree takes a quarter of a
+second.  It goes by the sizes alone, so that a contour is measured alike in every job."""
 
 LONGEST_STEP = 1.0 / 24.0
 """Lines have no height over their chord; they are sampled at this share of their length all the same."""
@@ -76,8 +79,8 @@ def _path_points(path: ArcPath, height: float) -> tuple[Indices, Points2]:
 
 
 def _to_path(queries: Points2, path: ArcPath, piece: NDArray[np.int64], points: Array, accuracy: float) -> Values:
-    """Return the distance of each query to the pieces of the tree points nearest to it, in mm."""
-    _, near = KDTree(points).query(queries, k=CANDIDATES)
+    """Return the distance of each query to the pieces of the points nearest to it, in mm."""
+    near = _candidates(queries, points)
     found: Values = np.min([distances(queries, path, piece[near[:, k]]) for k in range(CANDIDATES)], axis=0)
     far = np.flatnonzero(found > accuracy)
     for i in range(piece_count(path) if far.size else 0):
@@ -89,11 +92,21 @@ def _to_polygons(queries: Points2, polygons: Sequence[Array], accuracy: float) -
     """Return the distance of each query to the chords at the polygon point nearest to it, in mm."""
     start = np.concatenate([polygon[:-1] for polygon in polygons])
     end = np.concatenate([polygon[1:] for polygon in polygons])
-    _, near = KDTree((start + end) / 2.0).query(queries, k=CANDIDATES)
+    near = _candidates(queries, (start + end) / 2.0)
     found: Values = np.min([_to_chords(queries, start[n], end[n]) for n in near.T], axis=0)
     for i in np.flatnonzero(found > accuracy):
         found[i] = _to_chords(queries[i : i + 1], start, end).min()
     return found
+
+
+def _candidates(queries: Points2, points: Array) -> Numbers:
+    """Return the numbers of the `CANDIDATES` points, shape (k, 2), nearest to each query, in any order."""
+    if len(queries) * len(points) <= FEW_PAIRS:
+        squares = ((queries[:, None] - points) ** 2).sum(axis=2)
+        return np.argpartition(squares, CANDIDATES - 1)[:, :CANDIDATES]
+    from scipy.spatial import KDTree
+
+    return np.asarray(KDTree(points).query(queries, k=CANDIDATES)[1])
 
 
 def _to_chords(points: Array, start: Array, end: Array) -> Array:

@@ -4,7 +4,7 @@ A fold is the warp of the ruling at which a path turns off F = 0.  With one fold
 arrives can be reached from the first ruling without a fold, and the one that leaves leads to the last; both are found
 on the whole lattice by a sweep over its lines, in which a path may turn beside any open zero.  The least warps of every
 line join the coarse corners of `graph`, and the cheapest way is then found again and again on lattices that get
-finer around its corners, until its cost stays.
+finer around its corners, until its cost stays.  Where it does not within `ROUNDS`, it is said how much it changed last.
 
 The least fold among those that the lattice shows: an arc inside one cell is not seen; two folds or more are made
 smaller around their places on the coarse lattice alone, and one from end to end of both rails stays there.
@@ -31,24 +31,30 @@ SETTLED = 1e-6 * ANGLE
 """Changes of the cost by less, 1e-6 deg of folding, ends the search if two finer lattices bring no more."""
 
 
-def folded_way(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Way:
-    """Return the cheapest way, with its folds made as small as they can be."""
+def folded_way(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> tuple[Way, float]:
+    """Return the cheapest way, with its folds made as small as they can be, and by how much they may be smaller.
+
+    That is what the last two rounds changed of them, in rad; 0 where they have settled, pi where one came or went.
+    """
     found = field(rail_a, rail_b, count)
     every = zeros(found)
     best = way(found, every, rules, _anywhere(found, every))
     width = 1.0 / max(LEAST, count / max(len(rail_a), len(rail_b)))
     costs = [np.inf, np.inf]
+    changes = [0.0]
     for _ in range(ROUNDS):
         if not _corners(best).size or width < FINEST:
-            break
+            return best, 0.0
         after = _finer_way(best, rail_a, rail_b, rules, count=count, width=width)
+        changes.append(abs(after.cost - best.cost))
         stayed, best = _moved(best, after) <= SPAN * width / 2.0, after
         if not stayed:
             continue
         if max(abs(after.cost - cost) for cost in costs) <= SETTLED:
-            break
+            return best, 0.0
         costs, width = [after.cost, costs[0]], width / FINER
-    return best
+    folds = any(stop.fold for stop in best.stops)
+    return best, min(float(np.radians(max(changes[-2:]) / ANGLE)), np.pi) if folds else 0.0
 
 
 def _finer_way(best: Way, rail_a: Rail, rail_b: Rail, rules: Rules, *, count: int, width: float) -> Way:

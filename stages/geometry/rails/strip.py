@@ -41,6 +41,7 @@ class Strip:
     """A strip between rails: its legs, and the rails as it runs along them (turned to the seam if closed).
 
     starts: where these begin on the rails as given.  backwards_b: whether rail b is run the other way.
+    unsettled_rad: by how much its folds still changed when their search ended; 0 where they had settled.
     """
 
     legs: tuple[Leg, ...]
@@ -48,6 +49,7 @@ class Strip:
     rail_b: Rail
     starts: tuple[float, float] = (0.0, 0.0)
     backwards_b: bool = False
+    unsettled_rad: float = 0.0
 
 
 def open_strip(rail_a: Rail, rail_b: Rail, rules: Rules, count: int = LINES) -> Strip | None:
@@ -67,22 +69,23 @@ def _on_lattices(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Strip 
     Corners that the lattice promised and that are not there are looked for on twice as many lines, then done without.
     """
     for lines, beside in ((count, True), (2 * count, True), (count, False)):
-        best = _way(rail_a, rail_b, replace(rules, beside=beside), lines)
+        best, unsettled = _way(rail_a, rail_b, replace(rules, beside=beside), lines)
         if not best.stops:
             return None
         try:
-            return Strip(solved(legs(best.stops), rail_a, rail_b), rail_a, rail_b)
+            made = solved(legs(best.stops), rail_a, rail_b)
+            return Strip(made, rail_a, rail_b, unsettled_rad=unsettled)
         except NoSolutionError:
             continue
     return None
 
 
-def _way(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> Way:
-    """Return the best way over lattices, with folds as small as they can be where they are allowed."""
+def _way(rail_a: Rail, rail_b: Rail, rules: Rules, count: int) -> tuple[Way, float]:
+    """Return the best way over lattices, and by how much its folds, where they are allowed, may be smaller, rad."""
     if rules.fold_rad > 0.0:
         return folded_way(rail_a, rail_b, rules, count)
     found = field(rail_a, rail_b, count)
-    return way(found, zeros(found), rules)
+    return way(found, zeros(found), rules), 0.0
 
 
 def closed_strip(rail_a: Rail, rail_b: Rail, rules: Rules) -> Strip | None:

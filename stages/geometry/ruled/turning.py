@@ -14,11 +14,12 @@ Places are counted over the patches: patch i is [i, i + 1].  Not for surfaces wh
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil, radians
+from math import ceil, degrees, radians
 
 import numpy as np
 from numpy.polynomial import legendre
 
+from stages.errors import NoSolutionError
 from stages.geometry.arrays import EPS, Array, ArrayValue, Indices, Values, dot, norm, unit
 from stages.geometry.curves.curves import Curve
 from stages.geometry.numeric import quadrature
@@ -259,9 +260,21 @@ def _angles(bends: Turning, pieces: Indices) -> Angle:
 
 
 def equal_turns(total_rad: float, most_deg: float) -> int:
-    """Return into how many equal turns a total is divided so that none exceeds the most."""
-    return max(ceil(total_rad / radians(most_deg) * (1.0 - SUMMED)), 1)
+    """Return into how many equal turns a total is divided so that none exceeds the most.
 
+    Raises NoSolutionError where that takes more than `MOST_TURNS`.
+    """
+    wanted = total_rad / radians(most_deg) * (1.0 - SUMMED)
+    if wanted > MOST_TURNS:
+        reached = degrees(total_rad) / MOST_TURNS
+        raise NoSolutionError(
+            f"lines at equal turning, {MOST_TURNS} at most", reached=reached, wanted=most_deg, unit="deg"
+        )
+    return max(ceil(wanted), 1)
+
+
+MOST_TURNS = 5000
+"""Lines at equal turning of one run: with more they lie within a millimetre of each other on a part of 5 m."""
 
 SUMMED = 1e-9
 """What a sum of turns may be over a whole number of them by rounding alone, as a share."""

@@ -11,8 +11,8 @@ So square corners and slits that open by 30 degrees or more at the end of a comm
 slowly, a nose that comes back to the other part further on, and an edge at any other distance do not.  Holes need no
 excuse: what is nearer to a hole of a part than to its outline lies in the hole, where there are no common lines.
 
-Pieces are cut where lines leave the neighbourhood; an arc is cut into short steps, and one that is not wholly in the
-neighbourhood counts as outside of it, so that less is excused, never more.
+Pieces are cut where lines leave the neighbourhood; arcs are halved about where they do, down to a quarter of a gap, and
+what is not wholly in the neighbourhood then counts as outside of it, so that less is excused, never more.
 """
 
 from collections import defaultdict
@@ -41,7 +41,7 @@ NEAR_GAPS = 2.0
 """1 / sin 30 deg: a slit that opens by 30 deg is a gap wide at this many gaps from its end."""
 
 ARC_STEPS = 4.0
-"""Steps of an arc to a gap."""
+"""Steps of an arc to a gap, where it leaves a neighbourhood."""
 
 MEETING_KERFS = 2.0
 """The corners of four parts about a cross are 1.4 kerfs apart."""
@@ -195,8 +195,8 @@ def _cut(contour: Pieces, lines: Sequence[Line], gap_mm: float) -> tuple[Pieces,
     path = ArcPath(contour.start, contour.bulge, closed=True)
     cuts = [_line_cuts(contour, line.ends, near) for line in lines]
     marks = [[0.0, *(f for cut in cuts for f in cut[i] if 0.0 < f < LAST)] for i in range(contour.bulge.size)]
-    for i in np.flatnonzero(contour.bulge):
-        marks[i] = np.arange(0.0, 1.0, gap_mm / ARC_STEPS / lengths(path)[i]).tolist()
+    for i, shares_of_arc in _arc_cuts(contour, path, lines, near, gap_mm / ARC_STEPS).items():
+        marks[i] = shares_of_arc
     shares = [np.unique(np.round(each, SAME_PLACES)) for each in marks]
     piece = np.repeat(np.arange(len(shares)), [len(each) for each in shares])
     start = np.concatenate(shares)
@@ -224,12 +224,56 @@ def _line_cuts(contour: Pieces, ends: Array, near: float) -> Array:
     return np.stack(shares, axis=1)
 
 
+def _arc_cuts(
+    contour: Pieces, path: ArcPath, lines: Sequence[Line], near: float, least_mm: float
+) -> dict[int, list[float]]:
+    """Return where the parts of each arc begin, as shares: halved until each is in or out of every neighbourhood.
+
+    A part no longer than `least_mm` is left as it is.  An arc meets the edge of a neighbourhood in eight places at
+    most, and only the part about such a place is halved on: there are few, however small the gap.
+    """
+    found: defaultdict[int, list[float]] = defaultdict(list)
+    piece = np.flatnonzero(contour.bulge)
+    low, high, sweep, size = np.zeros(piece.size), np.ones(piece.size), sweeps(path), lengths(path)
+    while piece.size:
+        some = between(along(path, piece, low), along(path, piece, high), np.tan(sweep[piece] * (high - low) / 4.0))
+        done = (size[piece] * (high - low) <= least_mm) | _settled(some, lines, near)
+        for i, share in zip(piece[done].tolist(), low[done].tolist(), strict=True):
+            found[i].append(share)
+        piece, low, high = piece[~done], low[~done], high[~done]
+        middle = (low + high) / 2.0
+        piece, low, high = np.tile(piece, 2), np.concatenate([low, middle]), np.concatenate([middle, high])
+    return found
+
+
+def _settled(some: Pieces, lines: Sequence[Line], near: float) -> Mask:
+    """Return which arcs are halved no more: those wholly in or wholly out of each neighbourhood."""
+    settled = np.ones(some.bulge.size, dtype=bool)
+    for line in lines:
+        settled &= (_farthest(some, line.ends) <= near) | (_nearest(some, line.ends) > near)
+    return settled
+
+
+def _farthest(some: Pieces, ends: Array) -> Values:
+    """Return what no point of a piece is further from a segment than, mm: the farther end, an arc's height added."""
+    farthest: Values = np.maximum(_away(some.start, *ends), _away(some.end, *ends)) + _heights(some)
+    return farthest
+
+
+def _nearest(some: Pieces, ends: Array) -> Values:
+    """Return what no point of a piece is nearer to a segment than, mm: that of its chord, less an arc's height.
+
+    Not of chords that cross the segment: with them it says too much.
+    """
+    there = np.minimum(_away(some.start, *ends), _away(some.end, *ends))
+    back = [_away(end, some.start, some.end) for end in ends]
+    return np.asarray(np.minimum.reduce([there, *back]) - _heights(some))
+
+
 def _hanging(some: Pieces, piece: Indices, line: Line, near: float) -> Mask:
     """Return which pieces of a cut contour are near a common line and hang together with it."""
-    held = np.maximum(_from_line(some.start, line.ends), _from_line(some.end, line.ends))
-    straight = some.bulge == 0.0
-    height = np.abs(some.bulge) * norm(some.end - some.start) / 2.0
-    close = np.where(straight, _from_line((some.start + some.end) / 2.0, line.ends), held + height) <= near
+    middles = _away((some.start + some.end) / 2.0, *line.ends)
+    close = np.where(some.bulge == 0.0, middles, _farthest(some, line.ends)) <= near
     middle = np.tile(line.ends.mean(axis=0), (piece.size, 1))
     home = int(np.argmin(np.where(piece == line.piece, point_distances(middle, some), np.inf)))
     turned = np.roll(close, -home)
@@ -241,8 +285,13 @@ def _hanging(some: Pieces, piece: Indices, line: Line, near: float) -> Mask:
     return hanging
 
 
-def _from_line(points: Points2, ends: Array) -> Values:
-    """Return the distance of points to a segment, mm."""
-    chord = ends[1] - ends[0]
-    share = np.clip((points - ends[0]) @ chord / (chord @ chord), 0.0, 1.0)
-    return norm(points - ends[0] - share[:, None] * chord)
+def _away(points: Array, start: Array, end: Array) -> Values:
+    """Return the distance of points to segments, mm; one of either or one for each."""
+    chord = end - start
+    share = np.clip(dot(points - start, chord) / dot(chord, chord), 0.0, 1.0)
+    return norm(points - start - share[..., None] * chord)
+
+
+def _heights(some: Pieces) -> Values:
+    """Return the heights of arcs over their chords, mm: no point of an arc is further from its chord."""
+    return np.asarray(np.abs(some.bulge) * norm(some.end - some.start) / 2.0)

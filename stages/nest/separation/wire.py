@@ -15,7 +15,7 @@ from stages.nest.separation.sampling import Area
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Request:
-    """A problem, a layout to start from, and how long to search on how many cores.
+    """A problem, a layout to start from, and how long to search, on how many cores at most.
 
     settled: nothing overlaps in the layout; else items in bin -1 lie nowhere yet.
     cost, area, rectangle: of each bin, what it counts, its usable area, and whether its width is to be made small.

@@ -12,8 +12,10 @@ import signal
 import sys
 import threading
 from collections.abc import Sequence
+from dataclasses import replace
 from time import monotonic
 
+from numba import config
 from shapely import box
 
 from stages.nest.separation.problem import RECTANGLE, Item, Kind, Problem, Spot
@@ -31,11 +33,17 @@ def main() -> None:
         request = as_request(line)
         ready()
         _say({"ready": True})
-        answer(request)
+        answer(replace(request, threads=min(request.threads, cores())))
     except Exception as error:
         _say({"error": f"{type(error).__name__}: {error}"})
     sys.stdout.flush()
     os._exit(0)
+
+
+def cores() -> int:
+    """Return how many threads may search: the cores of this process, or fewer where numba was told so from outside."""
+    usable, told = config.NUMBA_DEFAULT_NUM_THREADS, config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    return max(min(int(usable), int(told)), 1)
 
 
 def answer(request: Request) -> None:

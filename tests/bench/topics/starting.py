@@ -17,8 +17,8 @@ from tests.bench.rows import Asked, Extent, Row
 from tests.bench.surroundings import ROOT, version
 
 ABOUT = (
-    "From the shell to the end of the process, files in the page cache; memory of the whole process. The jobs write "
-    "report.json and the DXF of one part; beside them a rectangle by a script of ezdxf."
+    "From the shell to the end of the process, modules compiled and in the page cache; memory of the whole process. "
+    "The jobs write report.json and the DXF of one part; beside them a rectangle by a script of ezdxf."
 )
 ROUNDS: dict[Extent, int] = {"quick": 1, "usual": 7, "full": 15}
 KB_PER_MB = 1024.0
@@ -71,7 +71,7 @@ def timed(what: str, found: str, words: Sequence[str], folder: Path, rounds: int
 
 def ended(words: Sequence[str], folder: Path) -> tuple[float, float]:
     """Return seconds and memory in MB of a command; one that fails is an error."""
-    surroundings = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": ""}
+    surroundings = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "", "PYTHONDONTWRITEBYTECODE": ""}
     start = perf_counter()
     child = subprocess.Popen(words, cwd=folder, env=surroundings, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     assert child.stderr is not None

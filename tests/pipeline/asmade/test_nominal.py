@@ -2,6 +2,8 @@
 
 import csv
 import io
+import json
+from hashlib import sha256
 from math import pi
 from pathlib import Path
 
@@ -24,6 +26,12 @@ def test_sizes_of_the_blank_and_of_the_formed_part_are_those_of_closed_forms(nom
     assert sizes["shell", "roll 1 radius"] == 299.0
     assert (sizes["angle", "flange 1"], sizes["angle", "flange 2"]) == (42.0, 62.0)
     assert_near(sizes["angle", "height"], 36 + 56 + pi / 2 * (4 + 0.4 * 2), bound=5e-7, why="rounded to 1e-6 mm")
+
+
+def test_nominal_sizes_say_which_job_and_which_report_they_are_of(made_job: Path, nominal: Nominal) -> None:
+    content = (made_job / "out" / "report.json").read_bytes()
+    assert nominal.digest == json.loads(content)["job"]["digest"]
+    assert nominal.report_sha256 == sha256(content).hexdigest()
 
 
 def test_the_empty_sheet_names_everything_and_reads_as_nothing_measured(made_job: Path, nominal: Nominal) -> None:

@@ -5,6 +5,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -64,8 +65,17 @@ def test_a_whole_batch_with_poison_on_a_cluster(tmp_path: Path, running: Dask, m
     check(jobs, out)
 
 
-def test_slots_follow_the_threads(workers: Cluster) -> None:
+@pytest.mark.parametrize(("threads", "counted"), [({"one": 4, "other": 3}, 7), ({}, 1)])
+def test_slots_follow_the_threads(
+    threads: dict[str, int], counted: int, workers: Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where no worker is left there is still one slot: the next job waits for one that comes."""
     assert workers.slots == cluster.AHEAD
+    with monkeypatch.context() as patched:
+        patched.setattr(workers.client, "nthreads", lambda: threads)
+        patched.setattr(workers, "counted", -inf)
+        assert workers.slots == cluster.AHEAD * counted
+    workers.counted = -inf
 
 
 def test_a_job_on_another_planish_comes_back_unrun_and_unblamed(tmp_path: Path, workers: Cluster) -> None:

@@ -1,10 +1,16 @@
 """A template with a table of values: a job for each row."""
 
+import json
+import pickle
 from pathlib import Path
 
 import pytest
 
+from pipeline.batch import guard
 from pipeline.batch.families import rows, settings, table_of
+from pipeline.batch.journal import Place
+from pipeline.batch.places import Places
+from pipeline.batch.work import Limits
 from stages.errors import BadInputError
 from tests.pipeline.batch.inprocess import tree
 from tests.pipeline.batch.runs import go
@@ -123,3 +129,40 @@ def test_a_quote_that_is_not_closed_spoils_some_rows_and_not_the_table(tmp_path:
     found = names(family(tmp_path, HEAD + body))
     assert found[0] == "blade-0000001"
     assert found[-1] == "r1499"
+
+
+CONE = """\
+schema = 1
+[[part]]
+name = "bow"
+[part.surface]
+kind = "cone"
+radius0 = 40
+radius1 = 40
+height = 50
+"""
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "wanted"),
+    [
+        ("radius0,height", "abc,40", 'part[0].surface.radius0: "abc" is not a number with a unit (a length such as'),
+        ("radius0,height", "30,-40", "part[0].surface.height: -40 mm (the height may not be negative)"),
+        ("radios0,height", "30,40", 'part[0].surface.radios0: unknown key (did you mean "radius0"?)'),
+    ],
+)
+def test_a_wrong_cell_is_told_with_its_table_row_and_path(tmp_path: Path, head: str, row: str, wanted: str) -> None:
+    """What crosses to the process that runs the job still knows where it was said; rows are those of a sheet."""
+    columns = ",".join(f"part[0].surface.{name}" for name in head.split(","))
+    file, template = tmp_path / "rows.csv", tmp_path / "cone.toml"
+    file.write_text(f"{columns}\n30,40\n\n{row}\n")
+    template.write_text(CONE)
+    places = Places((), Limits(60.0, 1 << 30))
+    found = list(rows(table_of(file, template)))
+    at = [Place(0, e.name, source, e.offset, e.length, e.line, e.content, 0) for source, e in found]
+    works = [pickle.loads(pickle.dumps(places.work(place, str(tmp_path / place.name))[1])) for place in at]
+    places.close()
+    record = guard.run(works[1])
+    assert record.cause.startswith(f"{file}: row 4: {wanted}")
+    (problem, *_) = json.loads((Path(works[1].draft) / "errors.json").read_text())["errors"]
+    assert problem["file"] == f"{file}: row 4"

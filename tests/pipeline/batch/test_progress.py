@@ -59,6 +59,22 @@ def test_only_some_failures_are_told_one_by_one(clock: list[float]) -> None:
     assert said[-1].endswith("50 not made")
 
 
+def test_that_the_workers_start_is_said_once(clock: list[float]) -> None:
+    """Before the first job has ended there is no rate, and little to say; a long first job is heard of each minute."""
+    said: list[str] = []
+    loop = StandIn()
+    loop.left = 5
+    listener = Progress(said.append)
+    for second in range(0, 76, 5):
+        clock[0] = float(second)
+        listener(cast(Loop, loop), None)
+    assert said == ["5 left, the workers start", "5 left, none done yet"]
+    listener(cast(Loop, loop), ended("made"))
+    clock[0] = 80.0
+    listener(cast(Loop, loop), None)
+    assert said[2].startswith("1 done, 5 left, ")
+
+
 def test_a_terminal_has_one_line_that_is_written_over(clock: list[float]) -> None:
     said: list[str] = []
     listener = Progress(said.append, terminal=True)

@@ -1,5 +1,6 @@
 """Files with parts that are placed: STEP assemblies and blocks of 3DM, and names that are no plain ASCII."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from OCP.Interface import Interface_Static
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
+from pipeline.cad.rhino import UnreadableCadError
 from stages.geometry.arrays import norm
 from stages.model.cadface import CadFace
 from tests import cad, cadrhino
@@ -115,3 +117,42 @@ def test_blocks_of_a_3dm_file_lie_where_they_are_inserted(tmp_path: Path) -> Non
     assert_near(second, first + np.array([2000.0, 0, 0]), bound=1e-9, why="moved by 200 cm")
     assert_near(third, 2.0 * first + np.array([5000.0, 0, 0]), bound=1e-9, why="twice as large")
     assert_near(norm(np.ptp(first, axis=0)), np.hypot(500.0, 300.0), bound=1e-9, why="50 x 30 cm")
+
+
+def doubled(model: rhino3dm.File3dm, thing: rhino3dm.GeometryBase, levels: int) -> str:
+    """Return the id of a block that inserts two of a block, which does the same, and so on; the last holds a thing."""
+    number = block(model, thing, "level 0")
+    for level in range(1, levels + 1):
+        twice = tuple(rhino3dm.InstanceReference(number, rhino3dm.Transform.Identity()) for _ in range(2))
+        named = tuple(rhino3dm.ObjectAttributes() for _ in twice)
+        origin = rhino3dm.Point3d(0, 0, 0)
+        index = model.InstanceDefinitions.Add(f"level {level}", "", "", "", origin, twice, named)
+        number = model.InstanceDefinitions.FindIndex(index).Id
+    return number
+
+
+@pytest.mark.parametrize("levels", [1, 3])
+def test_blocks_within_blocks_are_read_as_often_as_they_are_inserted(tmp_path: Path, levels: int) -> None:
+    model = rhino3dm.File3dm()
+    placed(model, doubled(model, cadrhino.rhino_extrusion([(0, 0, 0), (50, 0, 0)], 30.0), levels), 0.0)
+    assert model.Write(str(tmp_path / "a.3dm"), 8)
+    assert len(cad.read(tmp_path / "a.3dm").faces) == 2**levels
+
+
+@pytest.mark.parametrize("thing", ["a body", "a point"])
+def test_blocks_that_multiply_without_end_are_refused_before_they_are_read(tmp_path: Path, thing: str) -> None:
+    """Blocks doubled forty times take a file of some kB, and a month to read; also where there is nothing in them."""
+    model = rhino3dm.File3dm()
+    body = (
+        cadrhino.rhino_extrusion([(0, 0, 0), (50, 0, 0)], 30.0)
+        if thing == "a body"
+        else rhino3dm.Point(rhino3dm.Point3d(0, 0, 0))
+    )
+    placed(model, doubled(model, body, 40), 0.0)
+    assert model.Write(str(tmp_path / "a.3dm"), 8)
+    inserted = 3 * 2**40 - 2  # of a block n: two of n - 1 and what they hold; the last one holds one thing
+    with pytest.raises(
+        UnreadableCadError,
+        match=f"^its blocks insert {re.escape(format(inserted, '.4g'))} objects; read here are at most ",
+    ):
+        cad.read(tmp_path / "a.3dm")

@@ -8,6 +8,7 @@ import pytest
 
 from stages.construct.curves import chain
 from stages.construct.railkind import rail_strip
+from stages.geometry.rails import folds
 from stages.geometry.rails.strip import closed_bounds
 from stages.model.rails import Rails
 from stages.model.surface import RuledSurface
@@ -16,6 +17,7 @@ from stages.unroll import unroll
 from stages.unroll.divide import blanks
 from tests.near import assert_near, assert_relative
 from tests.parts import Passage, Table, passage, read
+from tests.stages.geometry.rails.test_folds import SLIDING, random_rails
 
 HELICES: tuple[Table, Table] = (
     {"helix": {"radius": 100, "pitch": 60, "turns": 1.5}},
@@ -204,6 +206,39 @@ def test_a_frame_over_a_frame_that_is_rounded_at_its_corners_has_a_strip() -> No
     made = passage(rails(rounded_frame(), frame(1, 3)))
     assert made.refused_by is None
     assert made.value("construct", "join_normal_deg") < 1e-9
+
+
+def slot(half_width: float) -> Table:
+    return {"ellipse": {"center": [0, 0, 150], "major": [0, 120, 0], "minor": [half_width, 0, 0]}}
+
+
+@pytest.mark.parametrize("half_width", [6e-5, -1e-9])
+def test_a_rail_without_width_is_refused_and_told_to_be_a_polyline(half_width: float) -> None:
+    round_ = {"ellipse": {"center": [0, 0, 0], "major": [120, 0, 0], "minor": [0, 60, 0]}}
+    for a, b, name in ((round_, slot(half_width), "b"), (slot(half_width), round_, "a")):
+        made = passage(rails(a, b))
+        assert made.codes("construct", fatal=True) == ["rail-doubled"]
+        (finding,) = made.reports["construct"].findings
+        assert finding.where == {name: 0.5}
+        assert f"within {abs(half_width):.3g} mm of a straight line of 240 mm" in finding.message
+        assert "polyline" in finding.message
+
+
+def test_a_polyline_there_and_back_is_a_rail() -> None:
+    """Two cones from its ends over the ellipse, and two planes along it: the ends of pressed tube."""
+    line = {"polyline": [[120, 0, 0], [-120, 0, 0], [120, 0, 0]]}
+    across = {"ellipse": {"center": [0, 0, 150], "major": [0, 120, 0], "minor": [60, 0, 0]}}
+    made = passage(rails(line, across, folds="forbid"))
+    assert not made.codes("construct", fatal=True)
+    assert sorted(kinds(made)) == ["cone", "cone", "triangle", "triangle"]
+
+
+def test_folds_that_have_not_settled_are_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    a, b = ([[float(x) for x in point] for point in rail.exact] for rail in random_rails(SLIDING[0]))
+    table = curves(a, b, folds="allow")
+    assert "folds-unsettled" not in passage(table).codes("construct")
+    monkeypatch.setattr(folds, "ROUNDS", 1)
+    assert "folds-unsettled" in passage(table).codes("construct")
 
 
 def test_closed_rails_with_a_strip_have_no_lower_bound() -> None:

@@ -1,12 +1,13 @@
 """Straps over centre lines that stop bending: at places, over straight pieces, and where no strap goes on."""
 
 from fractions import Fraction
-from math import asin, degrees, hypot, pi, sqrt
+from math import asin, degrees, hypot, log, pi, sqrt
 
 import numpy as np
 import pytest
 
 from stages.construct import construct
+from stages.construct.strapstretch import _parts
 from stages.geometry.arrays import norm
 from stages.geometry.curves.curves import bezier, blossom
 from stages.geometry.flat.development import develop
@@ -116,6 +117,20 @@ def test_an_inflection_with_torsion_is_refused_with_the_longest_part_that_does(h
     assert passage(over(part_of(POLE, 0.25 + 1.001 * away, 1.0), half)).refused_by is None
     longer = passage(over(part_of(POLE, 0.25 + 0.999 * away, 1.0), half))
     assert longer.codes("construct", fatal=True) == ["strap-too-wide"]
+
+
+@pytest.mark.parametrize("at", [0.37, 0.527, 0.63])
+def test_a_narrow_place_between_the_samples_ends_a_part(at: float) -> None:
+    """0.5 + 2 exp(-x^2), x = (v - at) / 0.0015: above 1 where |x| < sqrt(log 4), narrower than any two samples."""
+    width = 0.0015
+    parts = _parts(lambda v: 0.5 + 2.0 * np.exp(-(((v - at) / width) ** 2)), 0.0, 1.0)
+    away = width * sqrt(log(4.0))
+    assert_near(np.array(parts).ravel(), [0.0, at - away, at + away, 1.0], bound=1e-12, why="closed form, bisected")
+
+
+def test_a_part_on_which_the_width_is_just_reached_stays_whole() -> None:
+    """4 v (1 - v) (1 - 1e-12) touches 1 from below in the middle."""
+    assert _parts(lambda v: 4.0 * v * (1.0 - v) * (1.0 - 1e-12), 0.0, 1.0) == [(0.0, 1.0)]
 
 
 def run_off(made: Passage) -> tuple[float, ...]:

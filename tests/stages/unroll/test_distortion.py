@@ -13,7 +13,8 @@ from stages.geometry.arrays import EPS, Array, dot, norm
 from stages.geometry.curves.curves import bezier
 from stages.geometry.flat.development import develop
 from stages.geometry.ruled.ruled import RuledPatch, between, end_normals, frames
-from tests.near import assert_near
+from stages.model.tolerances import STRAIN_LIMIT
+from tests.near import assert_near, assert_relative
 from tests.parts import (
     AUMANN_CUBIC,
     EXAMPLE_2_CYLINDER,
@@ -94,14 +95,32 @@ def test_the_metric_is_right_at_ten_thousand_places_by_another_differentiation(n
     assert (away <= HONEST + rounded).all(), "8 roundings of a position, times the squared degree"
 
 
-@pytest.mark.parametrize("lean", ["0.001", "0.1"])
-def test_a_needle_whose_rulings_run_nearly_along_its_edges_is_unrolled_like_any_other(lean: str) -> None:
+NEEDLE = ["0.001", "0.1"]
+
+
+def needle(lean: str) -> Table:
     """A cylinder of some 10 by 0.01 mm whose ruling and edge differ by down to 4e-5 rad: where w is mostly rounding."""
-    needle = aumann([[10, 0, lean], [f"-{lean}", "0.002", "-0.002"], ["0.003", "-0.003", "0.004"],
-                     ["-0.004", "0.005", "-0.005"]], [0, 0, 0], "-0.25", "-0.25")  # fmt: skip
-    found = distortion(of(needle))
+    return aumann([[10, 0, lean], [f"-{lean}", "0.002", "-0.002"], ["0.003", "-0.003", "0.004"],
+                   ["-0.004", "0.005", "-0.005"]], [0, 0, 0], "-0.25", "-0.25")  # fmt: skip
+
+
+@pytest.mark.parametrize("lean", NEEDLE)
+def test_a_needle_whose_rulings_run_nearly_along_its_edges_is_unrolled_like_any_other(lean: str) -> None:
+    found = distortion(of(needle(lean)))
     assert value(found, "metric_error") <= HONEST
     assert value(found, "area_error") <= 1e-12
+
+
+@pytest.mark.parametrize("lean", NEEDLE)
+def test_a_part_on_which_no_strain_is_defined_is_not_told_to_have_none(lean: str) -> None:
+    """Twice as wide as it should be, and leaning: at no node do ruling and edge enclose an angle worth the name."""
+    found = distortion(changed(of(needle(lean)), linear([[1.0, 0.0], [0.0, 2.0]])))
+    metrics = {metric.name: metric for metric in found.metrics}
+    for name in ("max_strain", "max_extension", "max_compression", "max_area_strain", "strain_rms"):
+        assert metrics[name].value is None
+    assert metrics["max_strain"].limit == STRAIN_LIMIT["fabrication"]
+    assert found.energy_mm2 is None
+    assert value(found, "area_error") > 0.5, "it is seen all the same"
 
 
 # Known distortions
@@ -118,6 +137,16 @@ def test_a_linear_map_is_measured_by_its_singular_values() -> None:
         ("metric_error", 1.0 - 0.996**2), ("angle_error_deg", 0.0),
     ):  # fmt: skip
         assert_near(value(found, name), abs(expected), bound=DERIVED, why=f"closed form of {name}")
+
+
+@pytest.mark.parametrize("name", ["plane, singular end rulings", "cone to its apex", "elliptic cylinder"])
+def test_what_lies_beside_an_apex_is_strained_and_has_energy_like_the_rest(name: str) -> None:
+    """All is shrunk alike: the energy is that of the whole area, and the least compression is no zero of the apex."""
+    found = distortion(changed(of(SHAPES[name]), linear([[0.997, 0.0], [0.0, 0.997]])))
+    assert found.energy_mm2 is not None
+    energy = 2.0 * 3e-3**2 * found.surface_area
+    assert_relative(found.energy_mm2, energy, bound=2.0 * DERIVED / 3e-3, why="the square of a strain of 3e-3")
+    assert_near(value(found, "max_extension"), -3e-3, bound=2e3 * DERIVED, why="two derivatives, up to 1000 times")
 
 
 def test_an_extension_is_told_from_a_compression() -> None:

@@ -70,6 +70,8 @@ def rows(*values: float | bool | None, evidence: tuple[Evidence, ...] = ()) -> l
         ("least", (1.0, -3.0, 2.0), -3.0, 11),
         ("least", (None, 3.0, 2.0), 2.0, 12),
         ("sum", (1.0, -3.0, 4.0), 2.0, None),
+        ("sum", (1.0, None, 4.0), None, None),
+        ("largest", (1.0, None, 4.0), None, 11),
         ("alike", (2.0, 2.0, 2.0), 2.0, 10),
         ("alike", (2.0, 2.0, 3.0), None, 10),
         ("all", (True, False, True), False, 11),
@@ -85,6 +87,11 @@ def test_figures_are_gathered_by_their_rule(
     assert type(metric.value) is type(expected)
     assert (metric.where or {}).get("face") == face
     assert (metric.unit, metric.limit) == ("mm", 5.0)
+
+
+def test_a_face_on_which_a_figure_is_not_defined_anywhere_is_passed_over() -> None:
+    (metric,) = gathered([*rows(1.0), (Metric("x", None, "mm", "proved", 5.0),), *rows(2.0)], [10, 11, 12], {})
+    assert (metric.value, (metric.where or {}).get("face")) == (2.0, 12)
 
 
 def test_a_gathered_figure_is_proved_where_all_are() -> None:

@@ -208,3 +208,15 @@ def test_cells_hold_what_they_may_and_everything() -> None:
     assert count.sum() == 1000
     assert count.max() <= 64
     assert count.min() >= 31
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3])
+def test_a_mesh_with_too_few_vertices_for_a_fit_is_called_coarse_and_nothing_infinite_is_told(steps: int) -> None:
+    x, y = (axis.ravel() for axis in np.meshgrid(*[np.linspace(0.0, 100.0, steps + 1)] * 2, indexing="ij"))
+    at = np.arange((steps + 1) ** 2).reshape(steps + 1, -1)
+    a, b, c, d = (corner.ravel() for corner in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    made = judged(Mesh(np.stack([x, y, x * y / 500.0], axis=1), faces))
+    (finding,) = made.findings[:1]
+    assert finding.code == "inconclusive" and finding.message.startswith("the mesh is too coarse for a verdict")
+    assert "inf" not in finding.message and "nan" not in finding.message

@@ -1,4 +1,4 @@
-"""PDF files: cubic pieces within their bound of the arcs, one page at 1:1 or many that are laid together."""
+"""PDF files: cubic pieces within their bound of the arcs, one page at 1:1."""
 
 import re
 from dataclasses import replace
@@ -9,15 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stages.geometry.paths.arcpath import ArcPath, area, bounds, distances, length, piece_count, split
-from stages.model.cutfile import PROFILES, Layer, Machine, Paper
+from stages.geometry.paths.arcpath import ArcPath, area, bounds, distances, length, piece_count
+from stages.model.cutfile import PROFILES, Layer, Machine
 from stages.model.pattern import FlatPattern
 from stages.write.colours import BRIGHTEST_ON_PAPER, on_paper, rgb
 from stages.write.drawing import Drawing, Item, extent, flat_drawing, sheet_drawing
 from stages.write.pdf import ARC_MM, CONDENSED, cubic_error, cubics, for_cubics
 from stages.write.pdfobjects import CAPITAL_SHARE, LETTER_SHARE, string
 from stages.write.pdfpages import CHECK_LAYER, MARGIN_MM, REGISTER_LAYER, drawing_pdf
-from stages.write.tiles import BORDER_MM, OVERLAP_MM, PAPERS, tiling
 from tests.near import assert_near
 from tests.stages.write.patterns import drop, nesting, plate, sector, strip
 from tests.stages.write.pictures import pdf_shapes, stream
@@ -199,96 +198,6 @@ def test_what_is_not_finite_cannot_be_written() -> None:
     object.__setattr__(path, "vertices", path.vertices * np.array([np.nan, 1.0]))
     with pytest.raises(ValueError, match="finite"):
         drawing_pdf(drawing, MACHINE)
-
-
-# Many pages
-
-
-def tiled(part: FlatPattern, paper: Paper = "A4") -> str:
-    return drawing_pdf(flat(part), Machine(also=("pdf",), paper=paper))
-
-
-def test_a_part_that_fits_one_page_takes_one() -> None:
-    assert_near(pages(tiled(plate())), [PAPERS["A4"]], bound=1e-6, why="upright, six decimals of a point")
-
-
-def test_every_page_has_its_own_place_and_100_mm() -> None:
-    text = tiled(strip())
-    assert_near(pages(text), [PAPERS["A4"][::-1]] * 6, bound=1e-6, why="628 x 300 mm and more: two rows of three")
-    found = contents(text)
-    places = [re.search(r"row (\d) of 2, column (\d) of 3", content) for content in found]
-    assert [place and place.groups() for place in places] == [(row, column) for row in "12" for column in "123"]
-    for content in found:
-        (x0, y0), (x1, y1) = check_ends(content)
-        assert_near([x1 - x0, y1 - y0], [100.0, 0.0], bound=1e-9, why="exact")
-        assert y0 < BORDER_MM
-
-
-def window(content: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return what a page shows of the drawing: from and to, in its frame."""
-    frame = re.search(r"(\S+) (\S+) (\S+) (\S+) re W n 1 0 0 1 (\S+) (\S+) cm /D Do", content)
-    assert frame is not None
-    x, y, width, height, right, up = map(float, frame.groups())
-    low = np.array([x - right, y - up])
-    return low, low + np.array([width, height])
-
-
-@pytest.mark.parametrize("part", [strip(), sector(), drop(), plate()], ids=lambda part: part.part)
-@pytest.mark.parametrize("paper", ["A4", "A3"])
-def test_the_pages_together_show_all_of_the_drawing(part: FlatPattern, paper: Paper) -> None:
-    text = tiled(part, paper)
-    windows = [window(content) for content in contents(text)]
-    points = np.concatenate([shape.points for shape in pdf_shapes(text)])
-    shown = [((low <= points) & (points <= high)).all(axis=1) for low, high in windows]
-    assert np.any(shown, axis=0).all()
-
-
-def test_neighbours_overlap_and_show_the_same_crosses() -> None:
-    text = tiled(strip())
-    found = contents(text)
-    windows = [window(content) for content in found]
-    assert_near(windows[0][1][0] - windows[1][0][0], OVERLAP_MM, bound=1e-9, why="ten decimals")
-    assert_near(windows[3][1][1] - windows[0][0][1], OVERLAP_MM, bound=1e-9, why="ten decimals")
-    crosses = np.array([[float(x), float(y)] for x, y in re.findall(r"\n(\S+) (\S+) m \S+ \2 l S", found[0])])[:-1]
-    crosses += np.array([3.0, 0.0])
-    seen = [
-        np.flatnonzero([(low < cross).all() and (cross < high).all() for low, high in windows]) for cross in crosses
-    ]
-    neighbours = [(0, 1), (0, 3), (1, 2), (1, 4), (2, 5), (3, 4), (4, 5)]
-    assert sorted(map(tuple, map(np.ndarray.tolist, seen))) == sorted(neighbours * 2)
-
-
-def test_pages_on_which_there_is_nothing_are_left_out_and_all_else_is_there() -> None:
-    """An L of two arms of 1000 x 20 mm: their corner and what they cover, not the square between them."""
-    corners = np.array([[0.0, 0.0], [1000.0, 0.0], [1000.0, 20.0], [20.0, 20.0], [20.0, 1000.0], [0.0, 1000.0]])
-    path = ArcPath(corners, np.zeros(6), closed=True)
-    found = tiling((0.0, 0.0, 1000.0, 1000.0), [path], "A4")
-    assert len(found.tiles) == found.rows + found.columns - 1
-    assert {(tile.row, tile.column) for tile in found.tiles} == {
-        *((row + 1, 1) for row in range(found.rows)), *((found.rows, column + 1) for column in range(found.columns)),
-    }  # fmt: skip
-
-
-def test_pages_within_a_part_are_there() -> None:
-    square = ArcPath(np.array([[0.0, 0.0], [900.0, 0.0], [900.0, 900.0], [0.0, 900.0]]), np.zeros(4), closed=True)
-    found = tiling((0.0, 0.0, 900.0, 900.0), [square], "A4")
-    assert len(found.tiles) == found.rows * found.columns > 9
-
-
-@given(st.floats(1.0, 4000.0), st.floats(1.0, 4000.0), st.floats(-1e4, 1e4), st.sampled_from(["A4", "A3"]))
-def test_pages_cover_any_extent_with_no_row_too_many(width: float, height: float, x: float, paper: Paper) -> None:
-    box = split(
-        ArcPath(np.array([[x, 0.0], [x + width, 0.0], [x + width, height], [x, height]]), np.zeros(4), closed=True),
-        max_bulge=1.0,
-    )
-    found = tiling((x, 0.0, x + width, height), [box], paper)
-    wide, high = found.window_mm
-    low = np.array([[tile.x, tile.y] for tile in found.tiles]).min(axis=0)
-    top = np.array([[tile.x + wide, tile.y + high] for tile in found.tiles]).max(axis=0)
-    assert (low <= np.array([x, 0.0]) + 1e-9).all()
-    assert (top >= np.array([x + width, height]) - 1e-9).all()
-    for count, long, shown in ((found.columns, width, wide), (found.rows, height, high)):
-        assert count == 1 or (count - 1) * (shown - OVERLAP_MM) + OVERLAP_MM < long + 1e-6
 
 
 def test_a_drawing_of_one_line_is_a_page_too() -> None:

@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from stages.model.cutfile import PROFILES, CutFile, Machine, Picture
 from stages.write import write
-from stages.write.drawing import Drawing, flat_drawing, sheet_drawing
+from stages.write.drawing import Drawing, Item, flat_drawing, sheet_drawing
 from stages.write.flavours import as_cut
 from stages.write.pictureback import picture_faults
 from stages.write.pictured import WRITERS, picture, pictured
@@ -34,6 +35,17 @@ def drawings(machine: Machine) -> list[Drawing]:
 def test_good_pictures_raise_no_alarm(machine: Machine) -> None:
     for drawing in drawings(machine):
         assert pictured([drawing], machine).findings == ()
+
+
+def scaled(item: Item) -> Item:
+    return replace(item, path=item.path.replace(vertices=100.0 * item.path.vertices))
+
+
+def test_a_drawing_of_too_many_pages_is_one_page_and_told_of() -> None:
+    (drawing, *_) = drawings(MACHINES[2])
+    large = replace(drawing, items=tuple(scaled(item) for item in drawing.items))
+    assert [finding.code for finding in pictured([large], MACHINES[2]).findings] == ["pdf-pages"]
+    assert pictured([large], replace(MACHINES[2], also=("svg",))).findings == ()
 
 
 def first(pattern: str, other: str) -> Callable[[str], str]:

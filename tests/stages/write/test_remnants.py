@@ -6,6 +6,7 @@ from stages.geometry.paths.arcpath import area, bounds
 from stages.model.cutfile import Machine
 from stages.model.sheet import Nesting, Rectangle
 from stages.write import write
+from stages.write.pictureback import svg_paths
 from stages.write.readback import ReadFile, read
 from tests.near import assert_near
 from tests.stages.write.patterns import nesting, plate, sector
@@ -46,3 +47,16 @@ def test_an_offcut_is_not_cut() -> None:
 
 def test_without_an_offcut_there_is_no_remnant() -> None:
     assert not [file for file in write([plate(), sector()], nesting(), Machine()).product if "remnant" in file.path]
+
+
+def test_a_remnant_has_the_pictures_that_every_drawing_has() -> None:
+    outcome = write([plate(), sector()], with_offcut(), Machine(also=("svg", "pdf")))
+    assert outcome.report.passed
+    paths = [file.path for file in outcome.product]
+    drawings = [path.removesuffix(".dxf") for path in paths if path.endswith(".dxf")]
+    assert "remnants/stock-2" in drawings
+    assert sorted(paths) == sorted(f"{one}.{how}" for one in drawings for how in ("dxf", "svg", "pdf"))
+    picture = next(file.text for file in outcome.product if file.path == "remnants/stock-2.svg")
+    (outline,) = svg_paths(picture)
+    assert (outline.layer, outline.closed, outline.start) == ("SHEET", True, (0.0, 0.0))
+    assert_near(outline.area_mm2, 270.0 * 300.0, bound=1e-9, why="a rectangle of whole numbers")

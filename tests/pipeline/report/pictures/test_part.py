@@ -17,6 +17,7 @@ from pipeline.report.pictures.edges import corner_points, hole_text, rulings, si
 from pipeline.report.pictures.flat import pattern_room
 from pipeline.report.pictures.flat_names import upright
 from pipeline.report.pictures.net import frame_of, net, normals, ruling_places, view_direction
+from pipeline.report.pictures.notes import in_columns, wrapped
 from pipeline.report.pictures.part import arrangement, part_picture, sheet_picture
 from stages.construct import construct
 from stages.geometry.curves.rigid import Rigid2
@@ -153,7 +154,7 @@ def test_signs_without_a_shape_become_boxes_and_long_names_keep_their_ends() -> 
 
 
 def test_notes_that_do_not_fit_are_counted() -> None:
-    lines = page.wrapped([f"note {i}" for i in range(30)], 40, 5)
+    lines = wrapped([f"note {i}" for i in range(30)], 40, 5)
     assert len(lines) == 5
     assert "26 more" in lines[-1]
 
@@ -252,3 +253,36 @@ def test_a_wide_surface_stands_over_its_pattern_and_a_tall_one_beside_it() -> No
     assert (tall.formed.height, tall.flat.left) == (6.0, tall.formed.right)
     assert wide.formed.height < tall.formed.height
     assert tall.formed.width < wide.formed.width
+
+
+@pytest.mark.parametrize(
+    ("notes", "left"),
+    [
+        ([], 0),
+        (["one"], 1),
+        (["one", "two"], 1),
+        (["one", "two " * 60, "three"], 4),
+        (["one " * 60, "two"], 3),
+        (["one", "two", "three " * 60], 2),
+        (["one " * 200], 10),
+    ],
+)
+def test_a_note_stays_in_its_column(notes: list[str], left: int) -> None:
+    """Lines are of 92 signs: the long notes take three, the longest ten."""
+    lines = wrapped(notes, 92, 10)
+    first, second = in_columns(lines)
+    assert [*first, *second] == lines
+    assert len(first) == left
+    assert not "".join(second[:1]).startswith(" ")
+
+
+def test_a_picture_says_the_size_that_the_report_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sampled along its circle a pipe of 300 mm would be 299.98 mm wide."""
+    said: list[str] = []
+    monkeypatch.setattr("pipeline.report.pictures.surface.caption", lambda *words: said.append(words[-1]))
+    arc = {"arc": {"center": [0, 0, 0], "radius": 150, "normal": [1, 0, 0], "start": 7, "end": 353}}
+    surface, pattern = made({"kind": "cylinder", "directrix": arc, "direction": [1, 0, 0], "length": 80})
+    part_picture(surface, pattern, ())
+    (words,) = said
+    assert "300.00" in words.split()
+    assert "80.00" in words.split()

@@ -6,10 +6,11 @@ import pytest
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import norm
 from stages.geometry.mesh.arap import energy, settled
-from stages.geometry.mesh.flat import MeshMap, at_rest, by_side, flattened, resting
+from stages.geometry.mesh.flat import at_rest, by_side, flattened, resting
 from stages.geometry.mesh.intrinsic import conformal, laid
 from stages.geometry.mesh.lengths import chords
 from stages.geometry.mesh.mesh import Mesh
+from stages.geometry.mesh.meshmap import MeshMap
 from stages.geometry.mesh.topology import edges_of
 from tests.meshes import KNOWN, Known, cylinder, hemisphere, misplaced, noisy, right_cone, single_precision, with_hole
 from tests.near import assert_near

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from stages.geometry.curves.plane import CircularArc, PlaneCurve, Segment
 from stages.geometry.curves.rigid import Rigid2
 from stages.geometry.flat.sampling import dense_points, length_and_area, resolved
+from stages.geometry.paths import hausdorff as measure
 from stages.geometry.paths.arcpath import ArcPath, transform
 from stages.geometry.paths.biarc import fit, trace
 from stages.geometry.paths.hausdorff import Deviation, hausdorff
@@ -53,6 +54,16 @@ def test_a_missing_hump_is_seen_from_both_sides() -> None:
     assert deviation(plain, toothed, 0.02).value_mm == pytest.approx(3.0, abs=1e-9)
     assert deviation(edges, RECTANGLE, 0.02).value_mm == pytest.approx(3.0, abs=1e-9)
     assert deviation(edges, toothed, 0.02).value_mm <= 1e-12
+
+
+def test_few_points_are_measured_as_many_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Comparing all pairs and asking the tree find the same distances, at corners and far away too."""
+    ring = RECTANGLE.vertices + np.array([0.3, -0.2])
+    edges: list[PlaneCurve] = [Segment(ring[i - 1], ring[i]) for i in range(4)]
+    few = deviation(edges, RECTANGLE, 0.02)
+    monkeypatch.setattr(measure, "FEW_PAIRS", 0)
+    many = deviation(edges, RECTANGLE, 0.02)
+    assert few.value_mm == many.value_mm == pytest.approx(float(np.hypot(0.3, 0.2)), abs=1e-12)
 
 
 @settings(max_examples=12, deadline=None)

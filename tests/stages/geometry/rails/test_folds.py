@@ -9,8 +9,10 @@ import pytest
 from stages.construct.rails import pieces
 from stages.geometry.arrays import Array
 from stages.geometry.curves.curves import Bezier, bezier, exactly
-from stages.geometry.rails.graph import SMOOTH, Rules
-from stages.geometry.rails.strip import backwards, open_strip
+from stages.geometry.rails import folds
+from stages.geometry.rails.folds import folded_way
+from stages.geometry.rails.graph import ANGLE, FOLD, SMOOTH, Rules
+from stages.geometry.rails.strip import LINES, backwards, open_strip
 from stages.geometry.rails.zeros import Flags, field, lines
 from stages.geometry.ruled.joins import join
 from tests.near import assert_near
@@ -97,6 +99,33 @@ def test_the_fold_is_the_same_with_the_rails_exchanged_and_run_backwards() -> No
     angle = fold((a,), (b,))
     assert_near(fold((b,), (a,)), angle, bound=1e-7, why="the search ends at 1e-6 deg")
     assert_near(fold(backwards((a,)), backwards((b,))), angle, bound=1e-7, why="the search ends at 1e-6 deg")
+
+
+def test_a_search_that_ends_before_its_folds_settle_says_by_how_much_they_changed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of one round the whole change: from the lattice that it began with to the one after."""
+    a, b = random_rails(SLIDING[0])
+    rules, angles = Rules(float(np.pi)), []
+    for rounds in (0, 1):
+        monkeypatch.setattr(folds, "ROUNDS", rounds)
+        way, change = folded_way((a,), (b,), rules, LINES)
+        angles.append(np.radians((way.cost - FOLD) / ANGLE))
+    assert_near(change, abs(angles[1] - angles[0]), bound=1e-12, why="all but the fold stays; rounding of 1e6")
+    assert change > 1e-6
+    strip = open_strip((a,), (b,), rules)
+    assert strip is not None and strip.unsettled_rad == change
+    monkeypatch.undo()
+    settled = open_strip((a,), (b,), rules)
+    assert settled is not None and settled.unsettled_rad == 0.0
+
+
+def test_a_way_without_folds_has_settled(monkeypatch: pytest.MonkeyPatch) -> None:
+    a, b = random_rails(2)
+    monkeypatch.setattr(folds, "ROUNDS", 1)
+    way, change = folded_way((a,), (b,), Rules(float(np.pi)), LINES)
+    assert not any(stop.fold for stop in way.stops)
+    assert change == 0.0
 
 
 def test_extra_lines_lie_between_the_even_ones() -> None:

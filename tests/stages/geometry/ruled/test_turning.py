@@ -1,19 +1,23 @@
 """How far strips bend: closed forms, a second integral, folds and inflections, and places at equal turning."""
 
 from fractions import Fraction
+from math import radians
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stages.errors import NoSolutionError
 from stages.geometry.arrays import Values, cross2, norm
 from stages.geometry.numeric import quadrature
 from stages.geometry.ruled.ruled import RuledPatch, bending, frames
 from stages.geometry.ruled.tightest import tightest
 from stages.geometry.ruled.turning import (
+    MOST_TURNS,
     Turning,
     chord_turning,
+    equal_turns,
     is_fold,
     places,
     run_angle,
@@ -155,6 +159,15 @@ def test_places_are_even_on_right_cones_and_on_planes() -> None:
     even = np.arange(1, 8) / 8
     assert_near(even_places(patches(RIGHT_FRUSTUM), 8), even, bound=1e-14, why="a constant rate")
     assert_near(even_places(patches(EXAMPLE_1), 8), even, bound=0.0, why="a plane: shares of the parameter")
+
+
+def test_steps_are_as_few_as_keep_the_angle_and_no_more_than_can_be_told_apart() -> None:
+    assert [equal_turns(radians(90.0), most) for most in (90.0, 89.999, 30.0, 7.0)] == [1, 2, 3, 13]
+    assert equal_turns(radians(MOST_TURNS * 0.1), 0.1) == MOST_TURNS
+    with pytest.raises(NoSolutionError) as raised:
+        equal_turns(radians(90.0), 1e-5)
+    assert_near([raised.value.reached], [90.0 / MOST_TURNS], bound=1e-15, why="the least step that so many lines allow")
+    assert (raised.value.wanted, raised.value.unit) == (1e-5, "deg")
 
 
 def test_places_may_lie_at_a_fold_several_times() -> None:

@@ -1,15 +1,21 @@
 """Common lines: what they excuse from the gap, and all that they do not."""
 
-from math import cos, radians, sin, tan
+from math import cos, log2, radians, sin, tan
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 
+from stages.geometry.arrays import Points2, Values
 from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.paths import arcs
+from stages.geometry.paths.clearance import Pieces, pieces
 from stages.model.pattern import FlatPattern
 from stages.model.sheet import Nesting, NestOptions, Placement, Sheet, SheetLayout
 from stages.nest.legal.certify import certify, passed
-from stages.nest.legal.common import common_stretches
+from stages.nest.legal.common import Line, _cut, common_stretches
 from stages.nest.legal.laid import lay
 from tests.near import assert_near
 from tests.stages.nest.shapes import Corners, box, contour, pattern, rectangle, ring
@@ -159,6 +165,52 @@ def test_rounded_corners_at_the_end_of_a_common_line_are_excused_if_they_are_sma
 
     assert codes((TALL, HERE), (rounded(3.0), beside(KERF))) == []
     assert codes((TALL, HERE), (rounded(40.0), beside(KERF))) == ["gap"], "a slit that opens slowly at first"
+
+
+def lens(bulge: float) -> Pieces:
+    """A plate 100 mm wide whose right side is the straight one of a common line, and whose other three are arcs."""
+    corners = [(0.0, 0.0), (100.0, 0.0), (100.0, 80.0), (0.0, 80.0)]
+    return pieces(contour(corners, [bulge, 0.0, bulge, bulge]).path)
+
+
+def cut(plate: Pieces, gap: float) -> tuple[Pieces, NDArray[np.bool_]]:
+    some, near = _cut(plate, [Line(0, 1, np.stack([plate.start[1], plate.end[1]]))], gap)
+    return some, near[:, 0]
+
+
+@pytest.mark.parametrize("gap", [5.0, 1e-3, 2e-6])
+def test_however_small_the_gap_arcs_are_cut_into_few_pieces(gap: float) -> None:
+    """Three arcs of some 300 mm, eight places each at most, two parts to a halving down to a quarter of the gap."""
+    some, _ = cut(lens(0.3), gap)
+    assert some.bulge.size <= 1 + 3 * 8 * 2 * log2(100.0 / (gap / 4.0))
+
+
+def on_arcs(some: Pieces, share: Values) -> Points2:
+    """Return points at the same shares of all pieces, one piece after the other."""
+    start, end, bulge = (np.repeat(one, share.size, axis=0) for one in (some.start, some.end, some.bulge))
+    found: Points2 = arcs.between(start, end, arcs.sweeps(bulge), np.tile(share, some.bulge.size))
+    return found
+
+
+def off_side(points: Points2) -> Values:
+    """Return how far points are from the right side of the plate, mm."""
+    away: Values = np.hypot(points[:, 0] - 100.0, points[:, 1] - np.clip(points[:, 1], 0.0, 80.0))
+    return away
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-0.6, 0.9), st.floats(-2.0, 1.8))
+def test_of_an_arc_is_excused_what_is_near_but_for_a_quarter_gap_and_nothing_else(bulge: float, decade: float) -> None:
+    gap, plate = 10.0**decade, lens(bulge)
+    some, near = cut(plate, gap)
+    away = off_side(on_arcs(some.take(np.flatnonzero(near)), np.linspace(0.0, 1.0, 41)))
+    assert away.max() <= 2.0 * gap + 1e-9, "1e-9: rounding of places and shares at 100 mm"
+    below = (some.start[:, 1] + some.end[:, 1] < 80.0) & (some.start[:, 0] + some.end[:, 0] < 200.0)
+    back = on_arcs(plate.take(np.array([0])), np.linspace(1.0, 0.0, 20_001))
+    surely = np.cumprod(off_side(back) <= 1.75 * gap).sum() - 1
+    whole = float(arcs.lengths(plate.start, plate.end, arcs.sweeps(plate.bulge))[0])
+    excused = arcs.lengths(some.start, some.end, arcs.sweeps(some.bulge))[near & below].sum()
+    assert excused >= whole * surely / 20_000 - gap / 4.0 - 1e-9, "a part may begin a quarter of a gap before the edge"
 
 
 def test_a_hole_near_the_common_edge_needs_no_excuse_of_its_own() -> None:

@@ -2,10 +2,13 @@
 
 import io
 import json
+import os
+import subprocess
 import sys
 from collections.abc import Sequence
 
 import pytest
+from numba import config
 from shapely import Polygon, box
 
 from stages.nest.separation import worker
@@ -214,3 +217,28 @@ def test_what_it_cannot_read_is_an_error_that_it_names(
     (only,) = said(line, monkeypatch, capsys)
     assert isinstance(only, dict)
     assert "Error" in only["error"]
+
+
+# How many threads
+
+
+@pytest.mark.parametrize(("told_numba", "wanted"), [(3, 3), (1, 1), (0, 1), (64, 3)])
+def test_no_more_threads_search_than_cores_may_be_used_and_fewer_where_numba_is_told_so(
+    told_numba: int, wanted: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(config, "NUMBA_DEFAULT_NUM_THREADS", 3)
+    monkeypatch.setattr(config, "NUMBA_NUM_THREADS", told_numba)
+    assert worker.cores() == wanted
+    asked: list[Request] = []
+    monkeypatch.setattr(worker, "answer", asked.append)
+    monkeypatch.setattr(worker, "ready", lambda: None)
+    said(request_line(ask(Problem((kind(oblong(10.0, 10.0)),), (Item(0, 0),), ((90.0, 25.0),)),
+                          (Spot(0, 0, 0.0, 5.0, 5.0),), threads=8)), monkeypatch, capsys)  # fmt: skip
+    assert [one.threads for one in asked] == [wanted]
+
+
+def test_the_environment_tells_numba() -> None:
+    code = "from stages.nest.separation.worker import cores; print(cores())"
+    environment = {**os.environ, "NUMBA_NUM_THREADS": "1"}
+    ran = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, check=True)
+    assert ran.stdout.split() == [b"1"]
