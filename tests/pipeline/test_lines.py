@@ -30,6 +30,12 @@ def test_the_warp_of_a_refused_mesh_is_told_once() -> None:
     assert line.startswith("  equivalent warp 0.5 deg")
 
 
+def test_what_is_true_or_false_is_told_so_with_what_it_must_be() -> None:
+    report = StageReport("verify", "shell", (Metric("regular", False, limit=True),), ())
+    (line,) = trouble_lines(report)
+    assert line == f"  regular is false, must be true; {REMEDIES['regular']}"
+
+
 def test_a_remedy_is_that_of_a_metric_or_a_finding_that_there_is() -> None:
     texts = "".join(file.read_text("utf-8") for file in (Path(__file__).parents[2] / "stages").glob("**/*.py"))
     assert [name for name in REMEDIES if f'"{name}"' not in texts] == []

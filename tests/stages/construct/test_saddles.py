@@ -162,13 +162,15 @@ def test_a_branch_that_stands_aside_is_refused_with_the_largest_offset() -> None
     assert made.refused_by is None
 
 
-def test_a_branch_that_ends_inside_the_main_is_refused_with_the_least_length() -> None:
-    found = refusal(TEE | {"length": 100})
+@pytest.mark.parametrize("table", [TEE | {"length": 100}, SLANTED | {"length": 90}])
+def test_a_branch_that_ends_inside_the_main_is_refused_with_the_least_length(table: Table) -> None:
+    """Of two patches of the slanted branch one alone is too short."""
+    found = refusal(table)
     assert found["code"] == "saddle-too-near"
     least = float(found["least_length_mm"])
-    short = float(min(ruling(TEE | {"length": 0}, 2 * mp.pi * k / 4096)[0] for k in range(4096)))
+    short = float(min(ruling(table | {"length": 0}, 2 * mp.pi * k / 4096)[0] for k in range(4096)))
     assert_near(least, -short, bound=1e-3, why="60 mm / 2 times half of (2 pi / 4096)^2, sampled")
-    assert passage(TEE | {"length": repr(least + 1e-6)}).reports["construct"].passed
+    assert passage(table | {"length": repr(least + 1e-6)}).reports["construct"].passed
 
 
 @pytest.mark.parametrize(

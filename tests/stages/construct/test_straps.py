@@ -255,7 +255,8 @@ def test_an_inflection_in_space_is_refused_with_its_place() -> None:
 
 def test_a_straight_line_has_no_strap() -> None:
     made = passage({"kind": "strap", "centre": {"line": [[0, 0, 0], [1, 2, 3]]}, "half_width": 1})
-    assert made.codes("construct", fatal=True) == ["strap-inflection"]
+    (finding,) = made.reports["construct"].findings
+    assert (finding.code, finding.fatal, finding.where) == ("strap-inflection", True, {"piece": 0, "v": 0.0})
 
 
 def test_a_curve_that_stops_has_no_strap() -> None:
