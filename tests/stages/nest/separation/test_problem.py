@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from hypothesis import given, settings
-from shapely import MultiPolygon, Point, Polygon, box
+from shapely import MultiPolygon, Point, Polygon, affinity, box
 
 from stages.geometry.arrays import EPS
 from stages.nest.separation.problem import (
@@ -24,7 +24,7 @@ from stages.nest.separation.problem import (
     polygons,
     tips_of,
 )
-from stages.nest.separation.sampling import COVERED, MOST_POLES, poles
+from stages.nest.separation.sampling import COVERED, LEAST_POLE, MOST_POLES, poles
 from tests.near import assert_near
 from tests.stages.nest.separation.scenes import BY_QUARTERS, FREE, UPRIGHT, ell, figures, frame, kind, oblong, scene
 
@@ -66,6 +66,7 @@ def test_every_disc_lies_within_its_shape_the_largest_first(shape: Polygon) -> N
     discs = poles(shape)
     assert 1 <= len(discs) <= MOST_POLES
     assert (np.diff(discs[:, 2]) <= 0.0).all()
+    assert (discs[1:, 2] > LEAST_POLE * discs[0, 2]).all()
     for x, y, radius in discs:
         assert shape.contains(Point(x, y))
         assert radius > 0.0
@@ -86,6 +87,14 @@ def test_discs_cover_most_of_a_square_or_there_are_as_many_as_there_may_be() -> 
     share = pi * float((discs[:, 2] ** 2).sum()) / 1e4
     assert share >= COVERED or len(discs) == MOST_POLES
     assert_near(float(discs[0, 2]), 50.0, bound=100.0 / 64.0, why="the middle of a cell")
+
+
+def test_discs_end_at_a_share_of_the_largest_wherever_the_shape_lies() -> None:
+    """A square with a tail: the tail holds discs of a twenty-fifth of the first, and none is taken."""
+    tailed = Polygon([(0, 0), (50, 0), (50, 49), (60, 49), (60, 50), (0, 50)])
+    near, far = poles(tailed), poles(affinity.translate(tailed, 3000.0, -40.0))
+    assert_near(far, near + np.array([3000.0, -40.0, 0.0]), bound=1e-9, why="the same cells")
+    assert near[-1, 2] > LEAST_POLE * near[0, 2]
 
 
 def test_a_needle_between_the_points_of_the_grid_has_one_disc() -> None:
