@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from fractions import Fraction
 from importlib import import_module
+from inspect import Parameter, signature
 from pkgutil import iter_modules
 
 import pytest
@@ -40,7 +41,9 @@ def tables(base: type[Table] = Table) -> Iterator[type[Table]]:
         yield from tables(one)
 
 
-def test_no_table_of_a_job_file_can_be_changed() -> None:
+def test_no_table_of_a_job_file_can_be_changed_or_made_by_the_order_of_its_fields() -> None:
     for module in iter_modules(model.__path__):
         import_module(f"{model.__name__}.{module.name}")
     assert [one.__name__ for one in tables() if not one.__struct_config__.frozen] == []
+    kinds = {one.__name__: {given.kind for given in signature(one).parameters.values()} for one in tables()}
+    assert [name for name, sorts in kinds.items() if not sorts <= {Parameter.KEYWORD_ONLY}] == []
