@@ -168,8 +168,8 @@ def test_a_branch_that_ends_inside_the_main_is_refused_with_the_least_length(tab
     found = refusal(table)
     assert found["code"] == "saddle-too-near"
     least = float(found["least_length_mm"])
-    short = float(min(ruling(table | {"length": 0}, 2 * mp.pi * k / 4096)[0] for k in range(4096)))
-    assert_near(least, -short, bound=1e-3, why="60 mm / 2 times half of (2 pi / 4096)^2, sampled")
+    short = float(min(ruling(table | {"length": 0}, mp.pi * (2 * k + 1) / 4096)[0] for k in range(4096)))
+    assert_near(least, -short, bound=1e-3, why="60 mm / 2 times half of (pi / 4096)^2, sampled")
     assert passage(table | {"length": repr(least + 1e-6)}).reports["construct"].passed
 
 

@@ -1,13 +1,18 @@
+from math import cos, radians, sin
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from stages.geometry.curves.rigid import Rigid2
+from stages.geometry.arrays import cross2
+from stages.geometry.curves.rigid import Rigid2, apply
 from stages.model.cutfile import Machine
 from stages.model.pattern import FlatPattern, Text
 from stages.model.sheet import Nesting, Placement, Sheet, SheetLayout
 from stages.write import write
 from stages.write.compare import compared
-from stages.write.drawing import flat_drawing
+from stages.write.drawing import flat_drawing, moved_text
 from stages.write.dxf import dxf_text
 from stages.write.readback import Writing, read
 from tests.near import assert_near
@@ -66,3 +71,17 @@ def test_a_text_that_is_missing_is_found() -> None:
     drawing = flat_drawing(lettered(), Machine())
     without = dxf_text(flat_drawing(plate(), Machine()), Machine())
     assert [found.code for found in compared(read(without), drawing, {}).findings] == ["readback-content"]
+
+
+@given(st.floats(0.0, 360.0), st.floats(0.0, 360.0), st.booleans())
+def test_the_line_of_a_text_goes_with_its_part_and_its_letters_are_never_mirrored(
+    angle: float, turned: float, mirrored: bool
+) -> None:
+    """The baseline has the direction of its image, or the opposite one on a mirrored part; its middle is its image."""
+    motion = Rigid2(30.0, -4.0, turned, mirrored)
+    label = moved_text(Text("note", "A-1", np.array([12.0, 7.0]), 5.0, angle), motion)
+    way = np.array([cos(radians(angle)), sin(radians(angle))])
+    image = np.diff(apply(motion, np.stack([np.zeros(2), way])), axis=0)[0]
+    across = cross2(image, np.array([cos(radians(label.angle_deg)), sin(radians(label.angle_deg))]))
+    assert_near(across, 0.0, bound=1e-13, why="rounding of angles up to 720 deg")
+    assert_near(label.at, apply(motion, np.array([[12.0, 7.0]]))[0], bound=1e-13, why="the same map")
