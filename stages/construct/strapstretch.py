@@ -120,13 +120,25 @@ def _closing(curve: Curve, ruling: Curve | None, half: float, poles: Sequence[fl
     return np.where(np.isnan(rate) | np.isin(v, poles), np.inf, rate)
 
 
-def _parts(rate: Callable[[Values], Values], low: float, high: float) -> list[tuple[float, float]]:
-    """Return the parts of [low, high] in which a rate is below 1: at samples, and at its peaks between them."""
+def _parts(rate: Callable[[Values], Values], low: float, high: float, divided: int = 0) -> list[tuple[float, float]]:
+    """Return the parts of [low, high] in which a rate is below 1: at samples, and at its peaks between them.
+
+    What is shorter than `SHORTEST`, or still has peaks after `MOST_DIVIDED` divisions, is left out: less is told.
+    """
     found = []
     for start, end in _intervals(lambda v: rate(v) < 1.0, low, high):
+        if end - start < SHORTEST:
+            continue
         peak = _peak(rate, start, end)
-        found += [(start, end)] if peak is None else [*_parts(rate, start, peak), *_parts(rate, peak, end)]
+        if peak is None:
+            found.append((start, end))
+        elif divided < MOST_DIVIDED:
+            found += [*_parts(rate, start, peak, divided + 1), *_parts(rate, peak, end, divided + 1)]
     return found
+
+
+SHORTEST, MOST_DIVIDED = 1.0 / 128.0, 4
+"""Of a piece: shorter parts are no straps.  A rate that has peaks beside its peaks again and again is noise."""
 
 
 def _peak(rate: Callable[[Values], Values], start: float, end: float) -> float | None:
