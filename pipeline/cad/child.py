@@ -29,12 +29,12 @@ def main() -> None:
 def read(file: str, sort: str) -> CadBody | Unreadable:
     """Return the faces of a file, or why there are none."""
     if sort == "3dm":
-        from pipeline.cad import rhino as cad_3dm
+        from pipeline.cad import rhino
 
-        return _tried(lambda: cad_3dm.faces(file))
-    from pipeline.cad import step as cad_step
+        return _tried(lambda: rhino.faces(file))
+    from pipeline.cad import step
 
-    return _tried(lambda: cad_step.faces(file, sort))
+    return _tried(lambda: step.faces(file, sort))
 
 
 def _tried(reading: Callable[[], CadBody]) -> CadBody | Unreadable:

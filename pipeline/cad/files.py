@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from pipeline.cad import wire as cadwire
+from pipeline.cad import wire
 from pipeline.cad.wire import Unreadable
 from pipeline.decode import ResolveError
 from pipeline.orphans import PARENT
@@ -147,8 +147,8 @@ def read_guarded(command: Sequence[str], seconds: float) -> CadBody | Unreadable
     if child.returncode or not child.stdout:
         return Unreadable("the reader crashed over it")
     try:
-        return cadwire.read(child.stdout)
-    except cadwire.WireError:
+        return wire.read(child.stdout)
+    except wire.WireError:
         return Unreadable("the reader answered with something else than faces")
 
 

@@ -260,16 +260,11 @@ def _angles(bends: Turning, pieces: Indices) -> Angle:
 
 
 def equal_turns(total_rad: float, most_deg: float) -> int:
-    """Return into how many equal turns a total is divided so that none exceeds the most.
-
-    Raises NoSolutionError where that takes more than `MOST_TURNS`.
-    """
+    """Return into how many equal turns a total is divided, none above the most; NoSolutionError above `MOST_TURNS`."""
     wanted = total_rad / radians(most_deg) * (1.0 - SUMMED)
     if wanted > MOST_TURNS:
         reached = degrees(total_rad) / MOST_TURNS
-        raise NoSolutionError(
-            f"lines at equal turning, {MOST_TURNS} at most", reached=reached, wanted=most_deg, unit="deg"
-        )
+        raise NoSolutionError(f"{MOST_TURNS} lines at equal turning", reached=reached, wanted=most_deg, unit="deg")
     return max(ceil(wanted), 1)
 
 
