@@ -2,7 +2,9 @@
 
 The first call warms up, unless it is so long that it counts: then it is the only one.  The memory is that of the last
 call, by the mark of the kernel for the largest resident set (proc(5): VmHWM, reset through clear_refs), after what
-earlier calls left free has been given back.  None where the system does not tell it.
+earlier calls left free has been given back.  What the heap cannot give back (free, but below memory that is in use)
+counts as there before, so the figure may be too small in a process that has done much else.  None where the system
+does not tell it.
 """
 
 import ctypes

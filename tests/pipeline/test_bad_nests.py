@@ -19,7 +19,7 @@ outline = { polyline = [[0, 0], [40, 0], [40, 30], [0, 30], [0, 0]] }
 SQUARE = "[[0, 0], [50, 0], [50, 50], [0, 50], [0, 0]]"
 LOOPED = "[[0, 0], [50, 0], [50, 9], [30, 9], [30, -9], [9, -9], [0, 9], [0, 0]]"
 FULL = "[[0, 0], [100, 0], [100, 60], [0, 60], [0, 0]]"
-LIMIT_S = 2.0
+LIMIT_S = 10.0
 """Of processor time, with checks of shapes and other work on the machine; a free core takes under a quarter of it."""
 
 

@@ -19,6 +19,8 @@ from stages.model.scalars import Length, Number
 from tests.pipeline.jobs import write_job
 
 FILE = Path("job.json")
+SOON_S = 20.0
+"""Of the processor, for what takes a fraction of a second, and minutes where it grows with the square."""
 Job = dict[str, object]
 
 
@@ -100,7 +102,7 @@ def test_at_a_cap_nothing_is_said_of_it_and_one_beyond_is_refused_at_once(tmp_pa
     most, made = CAPS[name]
     before = process_time()
     beyond = complaints(tmp_path, made(most + 1))
-    assert process_time() - before < 2.0
+    assert process_time() - before < SOON_S
     assert any(words in text for words in BEYOND for text in beyond), beyond[:3]
     new = {*beyond} - {*complaints(tmp_path, made(most))}
     assert new, "one beyond is refused for what it has more"
@@ -151,7 +153,7 @@ def test_depth_that_no_parser_takes_is_a_problem_of_the_file_and_told_in_time(te
     before = process_time()
     with pytest.raises(BadInputError):
         refuse_huge(parse(text, Path(name)), Path(name))
-    assert process_time() - before < 2.0
+    assert process_time() - before < SOON_S
 
 
 def test_numbers_are_as_long_and_as_large_as_they_may_be_and_no_more() -> None:
@@ -177,7 +179,7 @@ def test_looking_for_long_names_takes_no_longer_than_the_text_is_long(text: str)
     before = process_time()
     with pytest.raises(BadInputError):
         parse(f"x = 1\n{text}", Path("job.toml"))
-    assert process_time() - before < 2.0
+    assert process_time() - before < SOON_S
 
 
 def test_a_dotted_name_is_as_long_as_it_may_be_and_no_longer() -> None:
@@ -195,7 +197,7 @@ def test_a_number_of_thousands_of_digits_is_refused_in_time(tmp_path: Path, digi
     before = process_time()
     with pytest.raises(BadInputError):
         read(write_job(tmp_path, text, name))
-    assert process_time() - before < 1.0
+    assert process_time() - before < SOON_S
 
 
 def test_a_job_file_is_cut_off_at_its_largest_size(tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ from tests.pipeline.jobs import write_job
 SECRET = b"what only its owner may see"
 MOST = 1000
 RACED_S = 1.0
+SOON_S = 20.0
+"""Beyond what a busy machine takes; what waits, waits for ever."""
 
 MESH = 'schema = 1\n[[part]]\nname = "p"\nsurface = {{ kind = "mesh", file = "{file}" }}\n'
 FACE = 'schema = 1\n[[part]]\nname = "p"\nsurface = {{ kind = "face", file = "{file}" }}\n'
@@ -105,7 +107,7 @@ def test_what_is_no_plain_file_is_refused_and_not_waited_for(home: Path, name: s
         assert refusal(Reach(home, (Path("/dev"),)), name).message == f"{name} is {what}"
         with pytest.raises(BadInputError, match=f"cannot be read: it is {what}"):
             read_bytes(home / name)
-        assert monotonic() - start < 1.0
+        assert monotonic() - start < SOON_S
 
 
 @pytest.mark.parametrize("name", ["a\0b", "\ud800", "x" * 5000, "x/" * 3000 + "x"])
@@ -177,7 +179,7 @@ def test_a_layout_that_is_no_plain_file_is_refused_and_not_waited_for(home: Path
     start = monotonic()
     with pytest.raises(BadInputError, match="cannot be read: it is a"):
         read_layout(home / name)
-    assert monotonic() - start < 1.0
+    assert monotonic() - start < SOON_S
 
 
 @pytest.mark.parametrize("kind", ["mesh", "face"])
