@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 DEFAULT = Machine()
 DRAWING = re.compile(r"cut/.*\.dxf")
 """What is read: pictures of the same name lie beside it."""
+MITRE = Finding(
+    "rounded-corners",
+    "a common line ends where the kerf rounds a corner, and does not run on beside the next part: set kerf_corners = "
+    '"mitre" under [process], or leave nest.common_line out',
+)
 
 
 def written(
@@ -45,7 +50,9 @@ def written(
     if nesting is None or not nesting.layouts or not report.passed:
         return outcome
     metrics, findings = certified_files(outcome.product, nesting, patterns, options, machine)
-    told = replace(report, metrics=(*report.metrics, *metrics), findings=(*report.findings, *findings))
+    rounded = options.common_line and machine.helps.compensated and not machine.helps.mitred
+    advice = (MITRE,) if rounded and any(finding.code == "gap" for finding in findings) else ()
+    told = replace(report, metrics=(*report.metrics, *metrics), findings=(*report.findings, *findings, *advice))
     return replace(outcome, report=told)
 
 

@@ -142,6 +142,7 @@ def check(job: Path, settings: tuple[str, ...], allow: tuple[Path, ...], as_json
 @click.argument("measured", required=False, type=click.Path(path_type=Path), metavar="[MEASURED.csv]")
 @click.option("--template", "empty", is_flag=True, help="Write an empty sheet of measurements to stdout.")
 @click.option("--job", type=click.Path(path_type=Path), metavar="JOB.toml", help="Needed for points: the job of OUT.")
+@click.option("--best-fit", "fitted", is_flag=True, help="Points in any frame: each copy moved to where it lies best.")
 @Settings
 @Allow
 @click.option("-o", "target", type=click.Path(path_type=Path), help="compare.json beside MEASURED.csv if absent.")
@@ -152,6 +153,7 @@ def compare(
     *,
     empty: bool,
     job: Path | None,
+    fitted: bool,
     settings: tuple[str, ...],
     allow: tuple[Path, ...],
     target: Path | None,
@@ -169,7 +171,8 @@ def compare(
     if measured is None:
         click.echo(template(nominal_of(out)).encode(), nl=False)
         return
-    made = comparison(out, measured, None if job is None else load(job, settings, allow, message, quiet=True))
+    ready = None if job is None else load(job, settings, allow, message, quiet=True)
+    made = comparison(out, measured, ready, fitted=fitted)
     content = encoded(compare_document(made))
     keep(target or measured.with_name(FILE), content)
     click.echo(content if as_json else "\n".join(compare_lines(made)), nl=not as_json)
@@ -256,8 +259,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = list(sys.argv[1:] if arguments is None else arguments)
     try:
         cli.main(given, prog_name="planish", standalone_mode=False)
-    except SystemExit:
-        raise
     except (KeyboardInterrupt, click.Abort):
         message("interrupted")
         sys.exit(EXIT_INTERRUPTED)

@@ -232,13 +232,17 @@ def nested(runner: Runner, patterns: "Sequence[FlatPattern]", job: Job) -> "Step
 
 
 def run_set(runner: Runner, part: "Part", job: Job) -> "tuple[PartRun, ...]":
-    """Return the blanks of one part as far as they get, the seams between them compared."""
+    """Return the blanks of one part as far as they get, the seams between them compared; what differs is told."""
     from pipeline.sets import with_seams
     from stages.construct.sets import parts_of, seams_of
 
-    runs = [run for piece in parts_of(part) for run in run_part(runner, piece, job)]
+    alone = [run for piece in parts_of(part) for run in run_part(runner, piece, job)]
     seams = seams_of(part)
-    return with_seams(runs, seams, job.tolerances) if seams else tuple(runs)
+    runs = with_seams(alone, seams, job.tolerances) if seams else tuple(alone)
+    for before, run in zip(alone, runs, strict=True):
+        if run.steps[-1].report.findings != before.steps[-1].report.findings:
+            runner.listener(run.steps[-1])
+    return runs
 
 
 def run_part(runner: Runner, part: "Part", job: Job) -> "tuple[PartRun, ...]":

@@ -137,6 +137,7 @@ class DrillSide(Struct, frozen=True):
 class FeatureSide(Struct, frozen=True):
     """What a part was given and its drawing does not say: names in the order of the file, places in the flat frame.
 
+    marks: strokes of texts among them, a grain line not.  texts: those that the drawing has as texts.
     boundary: x, y and bulge of each vertex of the outline before notches were cut into it; null: none were.
     """
 

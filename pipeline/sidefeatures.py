@@ -17,13 +17,15 @@ if TYPE_CHECKING:
 
 
 def features(run: "PartRun", marks: Sequence[MarkSide], machine: "Machine") -> FeatureSide | None:
-    """Return the features of a part; marks: as they follow in its drawing."""
+    """Return the features of a part; marks: as they follow in its drawing, a grain line among them."""
+    from stages.model.pattern import MARK_LAYERS
+
     pattern = run.pattern
     if pattern is None:
         return None
     return FeatureSide(
-        marks=tuple(marks),
-        texts=tuple(text.name for text in pattern.texts),
+        marks=tuple(mark for mark in marks if mark.layer in MARK_LAYERS),
+        texts=tuple(text.name for text in pattern.texts) if machine.text == "TEXT" else (),
         notches=tuple(_notches(pattern)),
         drills=tuple(_drills(pattern)) if machine.flavour == "aama" else (),
         boundary=_boundary(pattern),

@@ -124,6 +124,8 @@ class Sources:
         layers = row.layers or LayersTable()
         present = {str(entity.dxf.layer) for entity in self._drawing(name).modelspace()}
         used = stockfiles.used_layers(layers, present)
+        if missing := stockfiles.missing_layers(layers, present):
+            self.notes.append(f"{name}: {missing}")
         unused = sorted(present - {*used})
         if unused:
             self.notes.append(f"{name}: nothing is read from the layers {', '.join(unused)}")

@@ -7,8 +7,9 @@ published (`pipeline.stockjson`), or the remnants of an earlier job.
 A row keeps its own id if the file holds one piece, else it is `<id>-<number or id of the piece>`.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from itertools import permutations
 from math import atan2, degrees
 from pathlib import Path as FilePath
@@ -66,15 +67,35 @@ def rows_of_drawing(row: StockTable, curves: "Mapping[str, Sequence[Piece]]") ->
     return tuple(rows)
 
 
-def used_layers(layers: LayersTable, present: Iterable[str]) -> tuple[str, ...]:
+def used_layers(layers: LayersTable, present: Collection[str]) -> tuple[str, ...]:
     """Return those layers of a drawing that have a meaning; of the outline's the first that is there."""
     there = {name.casefold(): name for name in present}
     outline = [there[name.casefold()] for name in layers.outline if name.casefold() in there]
     if not outline:
-        hint = f"put it on {layers.outline[0]}, or say under layers = {{ outline = [...] }} where it is"
+        where = f"put it on {layers.outline[0]}, or say under layers = {{ outline = [...] }} where it is"
+        hint = "; ".join(filter(None, [where, _alike(layers.outline, present)]))
         raise ResolveError("file", f"no layer {' or '.join(layers.outline)} holds an outline", hint)
-    others = (*layers.defects, *(zone.layer for zone in layers.zones), *layers.grain, *layers.stretch)
-    return outline[0], *(there[name.casefold()] for name in others if name.casefold() in there)
+    return outline[0], *(there[name.casefold()] for name in _lying(layers) if name.casefold() in there)
+
+
+def missing_layers(layers: LayersTable, present: Collection[str]) -> str:
+    """Return what to say of layers that a job names beside the usual ones and a drawing does not have; or nothing."""
+    there, usual = {name.casefold() for name in present}, {*_lying(LayersTable())}
+    missing = [name for name in _lying(layers) if name not in usual and name.casefold() not in there]
+    said = [f"there is nothing on the layers {', '.join(missing)}", _alike(missing, present)]
+    return "; ".join(filter(None, said)) if missing else ""
+
+
+def _lying(layers: LayersTable) -> tuple[str, ...]:
+    """Return the layers of what lies on stock."""
+    return *layers.defects, *(zone.layer for zone in layers.zones), *layers.grain, *layers.stretch
+
+
+def _alike(missing: Iterable[str], present: Iterable[str]) -> str:
+    """Return a question for the layers whose names are like those of missing ones; nothing if there are none."""
+    there = {name.casefold(): name for name in sorted(present)}
+    near = [there[like] for name in missing for like in get_close_matches(name.casefold(), there, 1)]
+    return f"did you mean {', '.join(near)}?" if near else ""
 
 
 def _drawn(layers: LayersTable, curves: "Mapping[str, Sequence[Piece]]") -> Drawn:

@@ -37,7 +37,8 @@ def blank_sizes(part: str, flat: FlatEntry, tape: TapeEntry | None) -> Iterator[
 def polygon(flat: FlatEntry, tape: TapeEntry | None) -> Points2 | None:
     """Return the corners of a blank whose sides are all straight, counter-clockwise, mm; None of any other."""
     sides = [span.straight_mm for span in tape.spans if span.along_mm is not None] if tape is not None else []
-    if tape is None or len(tape.spots) < FEWEST_CORNERS or not isclose(sum(sides), flat.outline_length, rel_tol=SAME):
+    straight = isclose(sum(sides), flat.blank.outline_length, rel_tol=SAME)
+    if tape is None or len(tape.spots) < FEWEST_CORNERS or not straight:
         return None
     return np.array([(spot.x, spot.y) for spot in tape.spots])
 

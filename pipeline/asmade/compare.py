@@ -69,28 +69,32 @@ class Comparison:
         yield from (point.passed for cloud in self.clouds for point in cloud.points)
 
 
-def comparison(out: Path, sheet: Path, job: "Job | None") -> Comparison:
+def comparison(out: Path, sheet: Path, job: "Job | None", *, fitted: bool = False) -> Comparison:
     """Return a sheet of measurements beside the job of an output folder.
 
-    job: the job file read again, needed for points.  Raises `BadInputError`.
+    job: the job file read again, needed for points.  fitted: the points of a copy are moved to where they lie best.
+    Raises `BadInputError`.
     """
     nominal = nominal_of(out)
     measured = read_sheet(sheet, nominal)
     dimensions = tuple(compared(one) for one in measured.readings)
-    return Comparison(
-        nominal, dimensions, _clouds(measured, nominal, job, str(sheet)), offers(measured, nominal), measured.left
-    )
+    found = _clouds(measured, nominal, job, str(sheet), fitted=fitted)
+    return Comparison(nominal, dimensions, found, offers(measured, nominal), measured.left)
 
 
-def _clouds(measured: Measured, nominal: Nominal, job: "Job | None", sheet: str) -> "tuple[Cloud, ...]":
+def _clouds(
+    measured: Measured, nominal: Nominal, job: "Job | None", sheet: str, *, fitted: bool
+) -> "tuple[Cloud, ...]":
     if not measured.points:
+        if fitted:
+            raise BadInputError(Problem("there are no points to fit", "x", "leave --best-fit out", sheet))
         return ()
     if job is None:
         hint = "add --job JOB.toml, the job file of this folder: a report holds no surfaces"
         raise BadInputError(Problem("points need the surfaces of the parts", "x", hint, sheet, measured.points[0].line))
     from pipeline.asmade.points import clouds
 
-    return clouds(measured.points, nominal, job, sheet)
+    return clouds(measured.points, nominal, job, sheet, fitted=fitted)
 
 
 def compared(one: Reading) -> Compared:

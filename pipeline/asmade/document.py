@@ -7,13 +7,17 @@ The worst stands first: what failed, then by the share of the tolerance that is 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from importlib.resources import files
-from math import floor, isfinite, log10
+from math import degrees, floor, isfinite, log10
+from typing import TYPE_CHECKING
 
 from pipeline import __version__
 from pipeline.asmade.compare import SCHEMA, Compared, Comparison
 from pipeline.asmade.fits import Offer, Outlier, Tell, places_for
 from pipeline.asmade.points import Cloud, PointResult
 from pipeline.report.document import Document
+
+if TYPE_CHECKING:
+    from stages.geometry.ruled.bestfit import BestFit
 
 WIDEST_NAME = 40
 MOST_POINTS = 5
@@ -70,9 +74,21 @@ def _cloud(cloud: Cloud) -> Document:
         "part": cloud.part,
         "copy": cloud.copy,
         "evidence": "sampled",
+        "best_fit": None if cloud.fit is None else _best_fit(cloud.fit),
         "rms_mm": cloud.rms_mm,
         "worst": _point(cloud.worst),
         "points": [_point(point) for point in cloud.points],
+    }
+
+
+def _best_fit(fit: "BestFit") -> Document:
+    return {
+        "turn": fit.motion.turn.tolist(),
+        "shift_mm": fit.motion.shift.tolist(),
+        "angle_deg": degrees(fit.motion.angle_rad),
+        "free": fit.free,
+        "alone": fit.alone,
+        "last_step_mm": fit.last_step_mm,
     }
 
 
@@ -210,6 +226,8 @@ def _cloud_lines(cloud: Cloud) -> Iterator[str]:
         f"{_name(cloud.part)}  copy {cloud.copy}  {len(cloud.points)} points, {failed} out of tolerance, "
         f"rms {cloud.rms_mm:.3g} mm, worst {worst.off_mm:+.3g} mm on line {worst.reading.line} (sampled)"
     )
+    if cloud.fit is not None:
+        yield from _fit_lines(cloud.fit)
     for point in sorted(cloud.points, key=lambda one: (one.passed is not False, -abs(one.off_mm)))[:MOST_POINTS]:
         limit = "" if point.tolerance is None else f"  tolerance {float(point.tolerance):.4g}"
         beyond = "  beyond the edge" if point.beyond else ""
@@ -217,6 +235,15 @@ def _cloud_lines(cloud: Cloud) -> Iterator[str]:
             f"  line {point.reading.line}  {point.off_mm:+.4f} mm{limit}  +-{float(point.reading.uncertainty):.3g}"
             f"  at u {point.u:.3f} v {point.v:.3f}{beyond}  {MARKS[point.passed]}"
         )
+
+
+def _fit_lines(fit: "BestFit") -> Iterator[str]:
+    x, y, z = fit.motion.shift
+    yield f"  best fit: turned by {degrees(fit.motion.angle_rad):.4g} deg, then moved by ({x:.6g}, {y:.6g}, {z:.6g}) mm"
+    if fit.free:
+        yield f"    note: {fit.free} of 6 motions are not told by these points"
+    if not fit.alone:
+        yield "    note: the points fit as well elsewhere on the part"
 
 
 def _offer_lines(offer: Offer) -> Iterator[str]:

@@ -2,7 +2,8 @@
 
 The report holds no surface, so the job file is read again and the parts constructed; a job that is not the one of the
 report, by its digest, is refused.  Points are in the part's own frame: what a wrong place of the part on the bench adds
-counts as its own fault, and no best fit takes it off.
+counts as its own fault.  On request those of each copy are first moved, as a whole, to where they lie best
+(`geometry.ruled.bestfit`): for machines with a frame of their own.
 
 Ruled parts alone: not flat ones, meshes, parts that were divided, nor faces that branch.
 """
@@ -19,14 +20,22 @@ from pipeline.asmade.nominal import Nominal
 from pipeline.asmade.rows import PointReading, exact
 from pipeline.asmade.sheet import point_tolerance
 from pipeline.asmade.sizes import ISO
-from stages.errors import BadInputError, Problem
+from stages.errors import BadInputError, NoSolutionError, Problem
 from stages.geometry.arrays import Values
 
 if TYPE_CHECKING:
     from pipeline.job import Job
+    from stages.geometry.ruled.bestfit import BestFit
     from stages.geometry.ruled.feet import Feet
     from stages.model.sheetface import Layers
     from stages.model.surface import RuledSurface
+
+
+MOTIONS = 6
+"""Of a rigid part: as many points fit any surface."""
+SETTLED = 0.1
+"""The last step of a best fit is at most this share of what the instrument does not know."""
+FEW = f"a best fit needs more than {MOTIONS}: measure more, or lay them in the part's own frame, without --best-fit"
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +59,7 @@ class Cloud:
     part: str
     copy: int
     points: tuple[PointResult, ...]
+    fit: "BestFit | None"
 
     @property
     def rms_mm(self) -> float:
@@ -62,10 +72,13 @@ class Cloud:
         return max(self.points, key=lambda one: abs(one.off_mm))
 
 
-def clouds(points: Sequence[PointReading], nominal: Nominal, job: "Job", file: str) -> tuple[Cloud, ...]:
+def clouds(
+    points: Sequence[PointReading], nominal: Nominal, job: "Job", file: str, *, fitted: bool
+) -> tuple[Cloud, ...]:
     """Return all points against their parts; `BadInputError` with everything that stands against it.
 
-    file: the sheet, for messages.
+    file: the sheet, for messages.  fitted: those of each copy where they lie best; raises `NoSolutionError` where that
+    does not settle.
     """
     if job.digest != nominal.digest:
         hint = "give the job file that this folder was made from, with the same --set"
@@ -80,9 +93,14 @@ def clouds(points: Sequence[PointReading], nominal: Nominal, job: "Job", file: s
         for (part, _), group in groups.items()
         if part not in surfaces
     ]
+    problems += [
+        Problem(f"{len(group)} points of {part}, copy {copy}", "x", FEW, file, group[0].line)
+        for (part, copy), group in groups.items()
+        if fitted and len(group) <= MOTIONS
+    ]
     if problems:
         raise BadInputError(*problems)
-    return tuple(_cloud(surfaces[part], group, nominal) for (part, _), group in groups.items())
+    return tuple(_cloud(surfaces[part], group, nominal, fitted=fitted) for (part, _), group in groups.items())
 
 
 def _surfaces(job: "Job", names: set[str]) -> "dict[str, RuledSurface]":
@@ -100,16 +118,23 @@ def _surfaces(job: "Job", names: set[str]) -> "dict[str, RuledSurface]":
     return made
 
 
-def _cloud(surface: "RuledSurface", group: Sequence[PointReading], nominal: Nominal) -> Cloud:
+def _cloud(surface: "RuledSurface", group: Sequence[PointReading], nominal: Nominal, *, fitted: bool) -> Cloud:
     """Return the points of one copy against its surface."""
-    from stages.geometry.ruled.feet import exact_feet
+    from stages.geometry.ruled.bestfit import best_fit
+    from stages.geometry.ruled.feet import exact_feet, off_faces
     from stages.geometry.ruled.strip import Strip
 
     strip = Strip(surface.patches, np.arange(len(surface.patches) + 1.0))
-    feet = exact_feet(strip, np.array([one.at for one in group]))
+    measured, heights = np.array([one.at for one in group]), _offsets(surface, group)
+    fit = best_fit(strip, measured, heights) if fitted else None
+    wanted = SETTLED * min(float(one.uncertainty) for one in group)
+    if fit is not None and fit.last_step_mm > wanted:
+        raise NoSolutionError(f"the best fit of {group[0].part}", reached=fit.last_step_mm, wanted=wanted, unit="mm")
+    there = measured if fit is None else fit.motion.moved(measured)
+    feet = exact_feet(strip, there)
+    off, _ = off_faces(strip, feet, there, heights)
     first = group[0]
-    results = _results(group, feet, _offsets(surface, group), point_tolerance(nominal, first.part))
-    return Cloud(first.part, first.copy, results)
+    return Cloud(first.part, first.copy, _results(group, feet, off, point_tolerance(nominal, first.part)), fit)
 
 
 def _offsets(surface: "RuledSurface", group: Sequence[PointReading]) -> Values:
@@ -135,15 +160,12 @@ def _layers(surface: "RuledSurface") -> "Layers":
 
 
 def _results(
-    group: Sequence[PointReading], feet: "Feet", offsets: Values, usual: Fraction | None
+    group: Sequence[PointReading], feet: "Feet", off_mm: Values, usual: Fraction | None
 ) -> tuple[PointResult, ...]:
     """Return each point with its verdict."""
     made = []
-    for one, place, height, beyond, offset in zip(
-        group, feet.place, feet.distance_mm, feet.beyond, offsets, strict=True
-    ):
+    for one, place, off, beyond in zip(group, feet.place, off_mm.tolist(), feet.beyond, strict=True):
         limit, by = (one.tolerance, "sheet") if one.tolerance is not None else (usual, ISO)
-        off = float(height - offset)
         passed = None if limit is None else abs(exact(off)) <= limit
         made.append(PointResult(one, off, float(place[0]), float(place[1]), bool(beyond), limit, by, passed))
     return tuple(made)

@@ -15,10 +15,15 @@ ROUND = 1e-6
 """A hole is round if 4 pi A falls short of L^2 by less than this share."""
 
 
+class Kind(Struct, frozen=True):
+    """What a report is one of; read before all else of it."""
+
+    schema: str
+
+
 class Report(Struct, frozen=True):
     """What is needed of a report."""
 
-    schema: str
     job: JobEntry
     parts: tuple[PartEntry, ...]
 
@@ -31,13 +36,13 @@ def report_of(file: Path) -> tuple[Report, bytes]:
     except OSError as error:
         raise BadInputError(Problem(f"cannot be read: {error.strerror}", hint=hint, file=str(file))) from None
     try:
-        report = msgspec.json.decode(content, type=Report)
+        schema = msgspec.json.decode(content, type=Kind).schema
+        if schema != SCHEMA:
+            raise BadInputError(Problem(f'"{schema}" is not the report of a job', "schema", hint, str(file)))
+        return msgspec.json.decode(content, type=Report), content
     except (msgspec.DecodeError, RecursionError) as error:
         message = f"is no report that can be read: {error}"
         raise BadInputError(Problem(message, hint="run the job again with this version", file=str(file))) from None
-    if report.schema != SCHEMA:
-        raise BadInputError(Problem(f'"{report.schema}" is not the report of a job', "schema", hint, str(file)))
-    return report, content
 
 
 def detail_of(part: PartEntry) -> DetailEntry:

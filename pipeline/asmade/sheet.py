@@ -13,8 +13,8 @@ Comma-separated, UTF-8, one measurement a line, these columns, by name and in an
     x, y, z         of a point on the formed part instead of `measured`
 
 Only the first two and `measured`, `unit`, `uncertainty` are required of a sheet.  `what` of a point says where the
-probe touched, in the part's own frame: `point plus` or `point minus`, the face on that side; `point given`, the surface
-as the job gives it.
+probe touched: `point plus` or `point minus`, the face on that side; `point given`, the surface as the job gives it.
+The frame is the part's own; any other, the same for all points of a copy, where a best fit is asked for.
 
 Text that a spreadsheet would take for a formula is written behind an apostrophe, and read without it.
 """

@@ -232,7 +232,8 @@ def _through(at: "Ready", jobs: "Entries | None", means: Means, stop: "Stop", pr
     finally:
         executor.close(now=not clean)
     if jobs is not None and not (loop.accepted or stop.asked):
-        raise BadInputError(Problem("no jobs: the folders hold no *.toml and *.jsonl, or these are empty"))
+        message = "no jobs: the folders hold no *.toml and *.jsonl, these are empty, or the table has but its first row"
+        raise BadInputError(Problem(message))
     return loop
 
 

@@ -9,6 +9,7 @@ In messages they are counted as spreadsheets do: the first row, that of the path
 
 import codecs
 import csv
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -30,6 +31,7 @@ BETWEEN = ",;\t"
 """What may stand between cells: spreadsheets write semicolons where the comma is in numbers."""
 AROUND = b" \r\n"
 """What is no part of a row at its ends; a tab may be the end of an empty cell."""
+LINE_END = b"\n"
 WIDE = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 AS_UTF8 = "save it as CSV in UTF-8"
 
@@ -63,7 +65,7 @@ def table_of(file: Path, template: Path) -> Table:
     if wrong:
         raise BadInputError(*wrong)
     with file.open("rb") as stream:
-        head, _ = next(_records(stream), (b"", 0))
+        head, _ = next(_records(stream, BETWEEN), (b"", 0))
     try:
         between, columns = _parted(head)
     except ValueError as error:
@@ -107,7 +109,7 @@ def rows(table: Table) -> Entries:
     names = table.columns.index(ID) if ID in table.columns else None
     with table.file.open("rb") as stream:
         offset = 0
-        for number, (record, size) in enumerate(_records(stream)):
+        for number, (record, size) in enumerate(_records(stream, table.between)):
             own = record.strip(AROUND)
             if number and own:
                 start = offset + len(record) - len(record.lstrip(AROUND))
@@ -121,17 +123,22 @@ def content_of(table: Table, own: bytes) -> bytes:
     return content(table.shared + content(own))
 
 
-def _records(stream: BinaryIO) -> Iterator[tuple[bytes, int]]:
-    """Yield the rows of a table, each with the end of its line, and how long it is; an open quote goes on."""
+def _records(stream: BinaryIO, between: str) -> Iterator[tuple[bytes, int]]:
+    """Yield the rows of a table, each with the end of its line, and how long it is; a cell in quotes goes on.
+
+    between: what may stand between its cells.
+    """
+    quoted = re.compile(rb'(?:\A(?:\xef\xbb\xbf)?|[%s])"[^"]*+(?:""[^"]*+)*+("|\Z)' % re.escape(between).encode())
     whole: list[bytes] = []
-    quotes = length = 0
+    opened, length = False, 0
     for text, size in capped(stream):
         whole.append(text)
         length += size
-        quotes += text.count(b'"')
-        if quotes % 2 == 0 or len(whole) >= MOST_LINES:
+        cells = [*quoted.finditer(b'"' + text if opened else text)]
+        opened = bool(cells) and not cells[-1][1]
+        if not opened or len(whole) >= MOST_LINES:
             yield b"".join(whole), length
-            whole, quotes, length = [], 0, 0
+            whole, opened, length = [], False, 0
     if whole:
         yield b"".join(whole), length
 
@@ -163,7 +170,8 @@ def settings(columns: Sequence[str], own: bytes, between: str = ",", origin: str
     except UnicodeDecodeError:
         raise ValueError(f"{origin} is not UTF-8 text; {AS_UTF8}") from None
     except ValueError as error:
-        raise ValueError(f"{origin} cannot be read: {error}") from None
+        lines = f"; its quotes take {own.count(LINE_END) + 1} lines for one row" if LINE_END in own else ""
+        raise ValueError(f"{origin} cannot be read: {error}{lines}") from None
     if len(cells) != len(columns):
         raise ValueError(f"{origin}: {len(cells)} cells where the table has {len(columns)} columns")
     pairs = zip(columns, cells, strict=True)

@@ -237,7 +237,7 @@ def cost_line(made: Costs) -> str:
     cuts = made.cuts
     words = [counted(len(made.sheets), "sheet")]
     if made.net is None or made.price is None:
-        words.append("price not known (price under [[stock]])")
+        words.append(f"price{_priceless(made.sheets)} not known (price under [[stock]])")
     else:
         words.append(f"price {made.price:.2f}")
         words += [f"offcuts worth {made.credit:.2f}, net {made.net:.2f}"] if made.credit else []
@@ -247,6 +247,12 @@ def cost_line(made: Costs) -> str:
     unknown = "time not known (speed and pierce_time under [process])"
     words.append(unknown if seconds is None else f"time {_clock(seconds)}")
     return f"cost  {', '.join(words)}"
+
+
+def _priceless(sheets: Sequence[SheetCost]) -> str:
+    """Return of which stock no price is given, where there is one of other stock."""
+    names = dict.fromkeys(f'"{one.layout.sheet.id}"' for one in sheets if one.price is None)
+    return f" of {', '.join(names)}" if any(one.price is not None for one in sheets) else ""
 
 
 def _clock(seconds: float) -> str:

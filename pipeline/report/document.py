@@ -166,7 +166,8 @@ def _tape(run: PartRun, detail: Document) -> Document | None:
         return None
     from pipeline.report.tape import tape_entry
 
-    return tape_entry(run.pattern, flat["edges"])
+    widened = any(seam.allowance_mm > 0.0 for seam in run.part.spec.seam)
+    return tape_entry(run.pattern, None if widened else flat["edges"])
 
 
 def _formed(run: PartRun) -> Document | None:

@@ -48,6 +48,7 @@ class BlankEntry(Struct, frozen=True):
     area: float
     width: float
     height: float
+    outline_length: float
 
 
 class FlatEntry(Struct, frozen=True):
@@ -66,7 +67,7 @@ class FlatEntry(Struct, frozen=True):
     @property
     def blank(self) -> BlankEntry:
         """Return what is cut."""
-        return self.cut or BlankEntry(self.area, self.width, self.height)
+        return self.cut or BlankEntry(self.area, self.width, self.height, self.outline_length)
 
 
 class SpotEntry(Struct, frozen=True):

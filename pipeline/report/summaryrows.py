@@ -5,7 +5,7 @@ far a number is to its limit is its *load*, value over limit: 1 is the limit its
 defined beyond it; what failed comes before what passed whatever its load.
 
 Causes are grouped by the code of the first finding that was fatal, else by the metric that failed, else by the text of
-the runner with its numbers and quoted names taken out.
+the runner with its file, numbers and quoted names taken out.
 """
 
 import re
@@ -150,14 +150,24 @@ def _utilisation(found: ReportEntry) -> float | None:
 
 
 def grouped(cause: str) -> str:
-    """Return a cause with its numbers and quoted names taken out, so that like ones are counted together."""
-    text = QUOTED.sub("\u2026", cause)
-    text = NUMBER.sub("#", text)
+    """Return a cause without file, numbers and quoted names, so that like ones are counted together."""
+    text = PATH.sub("\u2026", QUOTED.sub("\u2026", PLACE.sub("", cause)))
+    text = ": ".join(_numberless(piece) for piece in text.split(": "))
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}\u2026"
 
 
+def _numberless(text: str) -> str:
+    """Return a text with # for its numbers; of a key such as `part[0].surface.k0` only for places in arrays."""
+    return INDEX.sub("[#]", text) if KEY.fullmatch(text) else NUMBER.sub("#", text)
+
+
+PLACE = re.compile(r"^/.*?: ")
+"""The file that a cause begins with, line and column with it: `/jobs/a.toml:23:11: `."""
+PATH = re.compile(r"(?<![\w/])/(?:[^\s/]+/)+[^\s/:,)]*")
 QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+INDEX = re.compile(r"\[\d+\]")
+KEY = re.compile(r"[a-z]\w*(?:\[\d+\])*(?:\.[a-z]\w*(?:\[\d+\])*)*")
 
 
 def held_document(held: Held) -> Document:

@@ -1,8 +1,8 @@
 """What to measure on a blank with a tape: corners with letters, edges along and straight, diagonals.
 
 The corners are those of the surface that was laid flat, c0(0), c1(0), c1(1), c0(1), where they lie on the outline that
-is cut; else (plates, meshes, allowances) those at which the outline turns by more than `SHARP_RAD`.  A blank without
-corners has nothing to measure but its width and height.
+is cut; else (plates, meshes, allowances) those at which the outline turns by more than `SHARP_RAD`.  A tape goes over
+notches.  A blank without corners has nothing to measure but its width and height.
 
 Evidence: corners and edges of a surface come from its development, sampled.  Those of an outline are lengths of the
 lines and arcs that are cut, in closed form, and distances of their ends: proved.
@@ -44,8 +44,11 @@ SQUARE = 4
 
 
 def tape_entry(pattern: FlatPattern, edges: Mapping[str, float] | None) -> Document:
-    """Return what is measured on the blank of a pattern; edges: of the surface that was laid flat, by name, mm."""
-    outline = pattern.outer.path
+    """Return what is measured on the blank of a pattern.
+
+    edges: of the surface that was laid flat, by name, mm; None where there are none, or the cut lies outside of some.
+    """
+    outline = (pattern.boundary or pattern.outer).path
     if edges is not None and _lie_on(pattern.corners, outline, ON_OUTLINE * pattern.outer.chord_mm):
         named = [(what, edges[what], first, last) for what, first, last in EDGES]
         return _entry(_pairs(pattern.corners), named, "sampled")

@@ -20,7 +20,8 @@ from stages.geometry.curves.arclength import Speed, reached
 from stages.geometry.curves.curves import Curve
 from stages.geometry.curves.plane import PlaneCurve
 from stages.geometry.flat.tabled import tabled
-from stages.geometry.ruled.pullback import PulledBack, nearest, pulled_back, rivals
+from stages.geometry.ruled.nearest import nearest, rivals
+from stages.geometry.ruled.pullback import PulledBack, pulled_back
 from stages.geometry.ruled.ruled import RuledPatch
 from stages.geometry.ruled.strip import Strip, jet, points, size
 from stages.model.curves import CurveSpec, PlanePoint, in_numbers, is_flat

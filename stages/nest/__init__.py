@@ -111,7 +111,8 @@ def _first_certified(plans: Sequence[Plan], rules: Rules, findings: Sequence[Fin
             if passed(metrics, faults):
                 return _outcome(made.nesting, (*metrics, *made.metrics), kept)
             kept += [Finding("layout-discarded", fault.message, where=fault.where) for fault in faults]
-    kept.append(Finding("no-layout", "no layout passed the certifier", fatal=True))
+    remedy = ": in the one that is given move the copies that are named, or leave them out of it" if rules.fixed else ""
+    kept.append(Finding("no-layout", f"no layout passed the certifier{remedy}", fatal=True))
     return _outcome(None, (), kept)
 
 

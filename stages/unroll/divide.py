@@ -7,10 +7,10 @@ the neutral surface), so everything is decided on one development.  A longer run
 one does: so the longest run from any ruling on is found by bisection, and such runs one after the other are as few as
 can be.  Then the largest of them is made as small, in area, as their number permits.
 
-Whether a run overlaps is decided by the area that it covers twice (`geometry.cover`), its edges as arcs through three
-of their points, each turning by at most `MOST_TURN`; `unroll` measures each blank again on the lines and arcs that are
-cut.  Not for a pattern that overlaps within 1/4096 of a patch (a fold), nor for a part with an outline of its own (a
-trim): that part stays whole.
+Whether a run overlaps is decided by the area that it covers twice (`geometry.paths.cover`), its edges as arcs through
+three of their points, each turning by at most `MOST_TURN`; `unroll` measures each blank again on the lines and arcs
+that are cut.  Not for a pattern that overlaps within 1/4096 of a patch (a fold), nor for a part with an outline of its
+own (a trim): that part stays whole.
 """
 
 from collections.abc import Callable

@@ -1,6 +1,6 @@
 """Whether the formed surface passes through itself, which no sheet can: a fatal finding for every crossing.
 
-Sampled: sheets that pass through each other by less than 1e-5 of the size count as touching (`geometry.crossing`).
+Sampled (`geometry.ruled.crossing`): sheets that pass through each other by less than 1e-5 of the size touch.
 Where sheets lie on each other over an area, as a pipe wound twice, whether they cross too is not decided: told.
 """
 

@@ -1,8 +1,8 @@
 """Cuts that would bring a mesh within the strain that leather takes: where, and how much strain each would leave.
 
-The end of a cut is put where a conformal map would have to magnify most (`geometry.scalefactor`); its beginning is one
-of several places around the boundary, the nearest among them, along the shortest way.  Each is tried: the mesh is slit
-and flattened, and the one that leaves the least strain is kept, its sides made equally long.  Then the next cut is
+The end of a cut is put where a conformal map would have to magnify most (`geometry.mesh.scalefactor`); its beginning is
+one of several places around the boundary, the nearest among them, along the shortest way.  Each is tried: the mesh is
+slit and flattened, and the one that leaves the least strain is kept, its sides made equally long.  Then the next cut is
 sought on the mesh with this one, until the limit holds or there are three.  The mesh is tried at full size, so that the
 strain told is what verify would find; the larger it is, the fewer places are tried (`BUDGET`).
 

@@ -4,9 +4,9 @@
 
 No threshold on angle defects: on irregular meshes of exact developables they are large and grow under refinement,
 on a finely divided hemisphere they are small.  Instead the mesh is flattened on lengths of the surface fitted to
-its vertices (`geometry.meshflat`), and two things are asked.  The strain left, averaged over cells of many
+its vertices (`geometry.mesh.flat`), and two things are asked.  The strain left, averaged over cells of many
 triangles, with the standard error of that average.  And the Gaussian curvature averaged over regions
-(`geometry.meshcurvature`), as the equivalent warp, with its uncertainty: how far it moves when the noise found is
+(`geometry.mesh.curvature`), as the equivalent warp, with its uncertainty: how far it moves when the noise found is
 added once more, and when the fit is one degree lower.
 
 Both give the class, at their least and at their largest.  If the job accepts the worst that may be, the part

@@ -168,6 +168,31 @@ def test_a_name_that_is_wider_than_its_copy_as_it_lies_is_left_out(page: Page) -
     assert page.ask(WRITTEN) == ["bar 0"]
 
 
+def test_the_cost_of_all_sheets_is_told_as_far_as_it_is_known(page: Page) -> None:
+    total = {"price": 125.0, "offcut_credit": 14.2605, "net": 110.7395, "cut_length_mm": 4500.25, "pierces": 7}
+    told = "costFacts(%s).textContent"
+    assert page.ask(told % json.dumps({**total, "time_s": 90.5})) == (
+        "Price125.00Offcuts worth14.26Net110.74Cut length4500.3\u00a0mmPierces7Cutting time90.5\u00a0s"
+    )
+    unknown = {**total, "price": None, "offcut_credit": 0.0, "net": None, "time_s": None}
+    assert page.ask(told % json.dumps(unknown)) == "Cut length4500.3\u00a0mmPierces7"
+
+
+WITH_ALLOWANCES = """(() => {
+  const part = partAt(0).report, flat = part.flat;
+  part.flat = { ...flat, cut: { width: 158.5, height: 200 } };
+  showPart(0);
+  const text = byId('part').innerText;
+  part.flat = flat;
+  showPart(0);
+  return text; })()"""
+
+
+def test_a_part_with_allowances_says_how_large_its_blank_is(page: Page) -> None:
+    assert "Blank with allowances\n158.5 \u00d7 200 mm" in str(page.ask(WITH_ALLOWANCES))
+    assert "Blank with allowances" not in str(page.ask("byId('part').innerText"))
+
+
 def test_money_has_two_decimals(page: Page) -> None:
     sheet = "showSheet({ ...report.nest.sheets[0], cost: %s }, 0).box.textContent"
     assert "Cost81.40" in str(page.ask(sheet % "81.40000000000001"))

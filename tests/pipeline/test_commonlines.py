@@ -68,3 +68,49 @@ def test_the_way_of_the_head_is_told_and_is_no_longer_than_part_by_part(
 ) -> None:
     for report in reports:
         assert 0.0 < metrics(report)["travel_mm"] <= metrics(report)["travel_listed_mm"] * (1.0 + 1e-9)
+
+
+BRICKS = """\
+schema = 1
+[material]
+thickness = 1
+[process]
+kerf = 0.25
+kerf_compensation = "offset"
+kerf_corners = "{corners}"
+[nest]
+gap = 6
+common_line = true
+layout = "bricks.json"
+[report]
+formats = ["json"]
+[[stock]]
+id = "sheet"
+width = 300
+height = 200
+edge_gap = 5
+[[part]]
+name = "brick"
+quantity = 4
+[part.surface]
+kind = "flat"
+outline = {{ polyline = [[0, 0], [100, 0], [100, 50], [0, 50], [0, 0]] }}
+"""
+"""The third brick reaches 9.75 mm over the second: too short to be a common line, and part of one that runs on."""
+
+
+@pytest.mark.parametrize(("corners", "told"), [("mitre", []), ("round", ["rounded-corners"])])
+def test_a_common_line_that_rounded_corners_end_is_refused_with_the_remedy(
+    tmp_path: Path, corners: str, told: list[str]
+) -> None:
+    at = [(10.0, 10.0), (110.25, 10.0), (20.0, 60.25), (120.25, 60.25)]
+    copies = [
+        {"part": "brick", "copy": i, "x": x, "y": y, "angle": 0.0, "mirrored": False} for i, (x, y) in enumerate(at, 1)
+    ]
+    sheets = [{"stock": "sheet", "index": 1, "placements": copies}]
+    stored = {"schema": "planish-layout/1", "job": "bricks", "engine": {"name": "planish", "version": "0", "seed": 0}}
+    (tmp_path / "bricks.json").write_text(json.dumps({**stored, "sheets": sheets}), "utf-8")
+    result = run_job(job_of(read(write_job(tmp_path, BRICKS.format(corners=corners)))))
+    assert result.nest.status == "pass"
+    assert [one.code for one in result.write.report.findings if one.code == "rounded-corners"] == told
+    assert (result.status == "made") == (not told)

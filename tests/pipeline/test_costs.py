@@ -127,6 +127,10 @@ def test_parts_with_leads_and_tabs_take_what_their_paths_in_the_files_take() -> 
         ),
         (reckoned(layout(), rates=Rates()), "price 20.00, cut 1.326 m, 4 pierces, time not known (speed and pierce_"),
         (reckoned(layout(SHEET.replace(price=None))), "price not known (price under [[stock]])"),
+        (
+            reckoned(layout(), layout(SHEET.replace(id="old", price=None))),
+            'price of "old" not known (price under [[stock]])',
+        ),
         (costs([layout()], PATTERNS, [Cuts(1.0, 1.0)], RATES), "cut 0.001 m, 1 pierce, time"),
     ],
 )

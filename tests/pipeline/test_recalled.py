@@ -244,3 +244,24 @@ def test_a_part_without_its_side_file_is_told(tmp_path: Path, change: Callable[[
     assert group.notes[-1] == (
         'no side file tells notches and what holes are for of "sewn/pocket": they are cut as drawn'
     )
+
+
+STROKES = ("[report]", 'text = "strokes"\n[report]')
+GRAIN = ('name = "pocket"\n', 'name = "pocket"\ngrain = 0\n')
+
+
+@pytest.mark.parametrize(
+    ("flavour", "change"), [("polyline-arcs", STROKES), ("aama", GRAIN)], ids=["texts as strokes", "a grain line"]
+)
+def test_lines_that_are_no_marks_of_the_part_do_not_hide_its_features(
+    tmp_path: Path, flavour: Flavour, change: tuple[str, str]
+) -> None:
+    text = JOB.format(flavour=flavour, chord=CHORD_MM).replace("height = 300", "height = 300\ngrain = 0")
+    result = run_job(job_of(read(write_job(tmp_path, text.replace(*change)))))
+    write_files(tmp_path / "out", outputs(result)[1])
+    found = finished(tmp_path / "out")
+    ((pattern,), wanted) = found.patterns, result.parts[0].pattern
+    assert wanted is not None
+    assert found.unrecalled == ()
+    assert purposes(pattern) == purposes(wanted)
+    assert [notch.name for notch in pattern.notches] == [notch.name for notch in wanted.notches]

@@ -8,7 +8,7 @@ import pytest
 from pipeline.files import drawings
 from pipeline.job import Job, job_of
 from pipeline.jobfile import read
-from pipeline.run import JobResult, PartRun, run_job
+from pipeline.run import JobResult, PartRun, Step, run_job, spread
 from pipeline.sets import with_seams
 from stages.construct.sets import Edges, Seam
 from stages.errors import BadInputError
@@ -26,6 +26,23 @@ name = "bend"
   angle = 60
   gores = 3
   bend_radius = 120
+"""
+
+
+TEE = """
+schema = 1
+[material]
+thickness = 1
+k_factor = 0.4
+[[part]]
+name = "branch"
+face = "inner"
+  [part.surface]
+  kind = "tee"
+  main = 120
+  branch = 80
+  length = 150
+  hole = true
 """
 
 
@@ -70,6 +87,15 @@ def test_sides_that_differ_by_more_than_the_tolerance_are_a_finding(
     difference = abs(one["edges"]["c1"] - other["edges"]["c1"])
     assert difference > 1.0
     assert told.steps[-1].report.metrics[-1].value == difference
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_seams_that_differ_are_told_as_soon_as_they_are_known(tmp_path: Path, workers: int) -> None:
+    told: list[Step[object]] = []
+    tee = job_of(read(write_job(tmp_path, TEE)))
+    run_job(tee, told.append, spread(workers))
+    codes = [(step.report.subject, f.code) for step in told for f in step.report.findings]
+    assert codes.count(("branch.2", "seams-differ")) == 1
 
 
 def test_a_seam_with_a_blank_that_was_refused_is_not_compared(result: JobResult) -> None:

@@ -10,6 +10,7 @@ from ezdxf.layouts import Modelspace
 from pipeline.job import job_of
 from pipeline.jobfile import read
 from pipeline.kinds import template
+from stages.errors import BadInputError
 from stages.geometry.paths.arcpath import area
 from tests.near import assert_near
 from tests.pipeline.jobs import PLATE, write_job
@@ -74,6 +75,23 @@ def test_layers_of_ones_own_are_said_in_the_job_file(tmp_path: Path) -> None:
     made = job(tmp_path, ROW.format("skin.dxf") + own)
     assert [zone.quality for zone in made.stock[0].zones] == [4]
     assert made.notes == ("skin.dxf: nothing is read from the layers Ticks",)
+
+
+def test_layers_that_a_job_names_and_a_drawing_lacks_are_told(tmp_path: Path) -> None:
+    def draw(space: Modelspace) -> None:
+        outline(space, "Skin")
+        space.add_circle((200, 200), 20, dxfattribs={"layer": "Belly"})
+
+    drawing(tmp_path, draw)
+    own = 'layers = { outline = ["SKIN"], zones = [{ layer = "BELY", quality = 4 }], defects = ["11", "scar"] }\n'
+    made = job(tmp_path, ROW.format("skin.dxf") + own)
+    assert made.notes == (
+        "skin.dxf: there is nothing on the layers scar, BELY; did you mean Belly?",
+        "skin.dxf: nothing is read from the layers Belly",
+    )
+    wrong = 'layers = { outline = ["SKINN"] }\n'
+    with pytest.raises(BadInputError, match=r"no layer SKINN holds an outline .*; did you mean Skin\?"):
+        job(tmp_path, ROW.format("skin.dxf") + wrong)
 
 
 def test_a_drawing_without_a_unit_has_that_of_the_job(tmp_path: Path) -> None:

@@ -97,6 +97,23 @@ def test_like_causes_are_grouped_and_long_ones_cut() -> None:
     assert len(grouped("x" * 300)) == 120
 
 
+@pytest.mark.parametrize("one", [
+    "/jobs/anna.toml:23:11: part[0].surface.radius0: -5 mm (a radius may not be negative)",
+    "/jobs/1b/bert.toml:9:1: part[12].surface.radius0: -7.5 mm (a radius may not be negative)",
+    "/orders.csv: part[3].surface.radius0: -1e-3 mm (a radius may not be negative)",
+])  # fmt: skip
+def test_one_mistake_in_several_files_is_one_cause(one: str) -> None:
+    assert grouped(one) == "part[#].surface.radius0: # mm (a radius may not be negative)"
+
+
+def test_another_key_is_another_cause_and_folders_are_none() -> None:
+    first, second = (grouped(f"/a.toml:1:1: part[0].surface.k{i}: 3 (at most 2)") for i in (0, 1))
+    assert (first, second) == ("part[#].surface.k0: # (at most #)", "part[#].surface.k1: # (at most #)")
+    missing = (f"/{n}/job.toml:2:8: part[0].surface.file: there is no file h.stl (looked for /{n}/h.stl)" for n in "ab")
+    assert {*map(grouped, missing)} == {"part[#].surface.file: there is no file h.stl (looked for …)"}
+    assert grouped("speed in mm/min of 1/8 in") == "speed in mm/min of #/# in"
+
+
 def test_a_pareto_falls_and_comes_to_all() -> None:
     rows = [
         JobRow(f"{k}-{i}", "crashed", "", f"cause {k}", None, 0, 0, None, 0.0, ())

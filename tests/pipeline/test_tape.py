@@ -1,6 +1,7 @@
 """What is measured on a blank with a tape, and how large a part is when it is formed."""
 
 from math import hypot, pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,6 +84,36 @@ def test_corners_that_are_not_on_the_outline_are_not_measured(job: JobResult) ->
     spans = tape_entry(grown, edges)["spans"]
     assert isinstance(spans, list)
     assert {one["what"] for one in spans} == {"edge", "diagonal"}
+    assert {one["evidence"] for one in spans} == {"proved"}
+
+
+LAPPED = """\
+schema = 1
+[[part]]
+name = "sleeve"
+  [part.surface]
+  kind = "cylinder"
+  directrix = { circle = { center = [0, 0, 0], radius = 50 } }
+  direction = [0, 0, 1]
+  length = 200
+  [[part.seam]]
+  edge = "start"
+  kind = "lapped"
+  allowance = 12
+  [[part.notch]]
+  seam = "start"
+  fraction = "1/2"
+"""
+
+
+def test_a_blank_is_measured_from_cut_to_cut_and_over_its_notches(tmp_path: Path) -> None:
+    """The corners of the surface lie on the cut edges c0 and c1, 12 mm from the corners of the blank."""
+    (sleeve,) = outputs(run_job(job_of(read(write_job(tmp_path, LAPPED)))))[0]["parts"]
+    spans = sleeve["tape"]["spans"]
+    wide, high = 200.0, 100.0 * pi + 12.0
+    along = [one["along_mm"] for one in spans if one["along_mm"] is not None]
+    assert_near(sorted(along), [wide, wide, high, high], bound=1e-9, why=LAST_DIGITS)
+    assert_near([one["straight_mm"] for one in spans[4:]], [hypot(wide, high)] * 2, bound=1e-9, why=LAST_DIGITS)
     assert {one["evidence"] for one in spans} == {"proved"}
 
 

@@ -39,6 +39,10 @@ function closePart() {
   current = null;
 }
 
+function sides({ width, height }) {
+  return `${shown(width)} \u00d7 ${shown(height)} mm`;
+}
+
 function showPart(index) {
   closePart();
   const part = partAt(index), row = report.rows[index];
@@ -49,7 +53,7 @@ function showPart(index) {
   const one = part.report;
   section.replaceChildren(
     make("h2", { id: "part-title", text: row.name }),
-    facts([["Verdict", failed ? "\u2717 fail" : "\u2713 pass"], ["Class", row.class], ["Quantity", row.quantity], ["Size", one.flat ? `${shown(one.flat.width)} \u00d7 ${shown(one.flat.height)} mm` : null],
+    facts([["Verdict", failed ? "\u2717 fail" : "\u2713 pass"], ["Class", row.class], ["Quantity", row.quantity], ["Size", one.flat ? sides(one.flat) : null], ["Blank with allowances", one.flat?.cut ? sides(one.flat.cut) : null],
       ["Area flat", one.flat ? shown(one.flat.area, "mm2") : null], ["Formed", one.formed ? `${one.formed.size_mm.map((side) => shown(side)).join(" \u00d7 ")} mm (${one.formed.evidence})` : null], ["Area formed", one.surface?.area ? shown(one.surface.area, "mm2") : null],
       ["Mass", one.mass_kg === null ? null : shown(one.mass_kg, "kg")], ["Cut length", one.cut_length_mm === null ? null : shown(one.cut_length_mm, "mm")], ["Pierces", one.pierces]]),
     views, ...[tapeBox(one)].filter(Boolean), ...one.stages.map((stage) => stageBox(stage.stage, stage)));

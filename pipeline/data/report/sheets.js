@@ -115,10 +115,17 @@ function showSheet(sheet, number) {
   return { box, open };
 }
 
+/* What all sheets cost together, as far as it is known. */
+function costFacts({ price, offcut_credit: credit, net, cut_length_mm: length, pierces, time_s: time }) {
+  return facts([["Price", price?.toFixed(2)], ["Offcuts worth", credit ? credit.toFixed(2) : null], ["Net", net?.toFixed(2)],
+    ["Cut length", length === null ? null : shown(length, "mm")], ["Pierces", pierces], ["Cutting time", time === null ? null : shown(time, "s")]]);
+}
+
 function startSheets() {
   const nest = report.nest;
   if (!nest?.sheets?.length) return;
   byId("sheets").hidden = false;
+  if (nest.cost) byId("nest-facts").append(costFacts(nest.cost.total));
   const waiting = new Map();
   const seen = new IntersectionObserver((entries) => entries.filter((e) => e.isIntersecting).forEach(({ target }) => { seen.unobserve(target); waiting.get(target)?.(); waiting.delete(target); }), { rootMargin: "200px" });
   const shownSheets = nest.sheets.map(showSheet);

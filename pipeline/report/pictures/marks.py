@@ -1,5 +1,7 @@
 """What is drawn on a flat pattern beside its contours: marks, bend lines, texts."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from pipeline.report.pictures.canvas import INK, PURPLE, Canvas, Fit
@@ -52,10 +54,15 @@ def has_bends(pattern: FlatPattern) -> bool:
 
 def marks_legend(pattern: FlatPattern) -> list[str]:
     """Return what the lines mean, with their numbers."""
-    counts = {how: sum(_style(mark) == how for mark in pattern.marks) for how in STYLES}
+    counts = {how: _count([mark for mark in pattern.marks if _style(mark) == how]) for how in STYLES}
     named = [f"{how}: {count} {STYLES[how][0]}{'s' * (count > 1)}" for how, count in counts.items() if count]
     stitches = sum(hole.purpose == "stitch" for hole in pattern.inner)
     return [*named, *([f"{stitches} stitch holes"] if stitches else [])]
+
+
+def _count(marks: Sequence[Mark]) -> int:
+    """Return how many lines of one style there are; a bend line that holes cut into pieces is one."""
+    return len({mark.name for mark in marks}) if marks and marks[0].layer.startswith("BEND") else len(marks)
 
 
 def mark_points(path: ArcPath, fit: Fit) -> Points2:

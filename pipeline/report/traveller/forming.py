@@ -8,6 +8,7 @@ from pipeline.report.traveller.numbers import DASH, degrees, millimetres, square
 from pipeline.sidelines import BendRow, Radii, RollRow
 
 NUMBER_MM = 12.0
+FLAT = "flat"
 
 
 def forming_tables(part: PartEntry, width_mm: float) -> Iterator[Table]:
@@ -65,22 +66,40 @@ def _roll_table(detail: DetailEntry, width_mm: float) -> Table:
     rows = tuple(Row(_roll_cells(number, roll)) for number, roll in enumerate(detail.rolls, 1))
     by = sorted({roll.tool_radius_by for roll in detail.rolls if roll.tool_radius_by})
     springback = f" Roll to, by springback: {'; '.join(by)}." if by else ""
+    sharp = "".join(sorted({f" {roll.note[:1].upper()}{roll.note[1:]}." for roll in detail.rolls if roll.note}))
     note = (
-        f"Fed across the rulings from the first on. Two values: at edge c0 and at edge c1.{springback}{_k_note(detail)}"
+        "Fed across the rulings from the first on. Two values: at edge c0 and at edge c1."
+        f"{springback}{_k_note(detail)}{sharp}"
     )
     return Table("Roll", columns, rows, note)
 
 
 def _roll_cells(number: int, roll: RollRow) -> tuple[str, ...]:
-    tool = DASH if roll.tool_radius_mm is None else _pair(roll.tool_radius_mm)
     return (
-        str(number), millimetres(roll.distance_mm), roll.side, _pair(roll.radius_mm), tool, degrees(roll.cone_tilt_deg),
+        str(number), millimetres(roll.distance_mm), roll.side, _pair(roll.radius_mm), _tools(roll),
+        degrees(roll.cone_tilt_deg),
     )  # fmt: skip
 
 
+def _tools(roll: RollRow) -> str:
+    """Return the radius to roll to at both edges: flat where the part is, a dash where no tool leaves its radius."""
+    if roll.tool_radius_mm is None:
+        return DASH
+    ends = zip(roll.radius_mm, roll.tool_radius_mm, strict=True)
+    return _once(*(_length(tool, DASH if radius is not None else FLAT) for radius, tool in ends))
+
+
 def _pair(values: Radii) -> str:
-    """Return a value at both edges, once where they are the same to what is written; flat where there is no radius."""
-    first, last = ("flat" if value is None else millimetres(value) for value in values)
+    """Return a value at both edges; flat where there is no radius."""
+    return _once(*(_length(value, FLAT) for value in values))
+
+
+def _length(value: float | None, without: str) -> str:
+    return without if value is None else millimetres(value)
+
+
+def _once(first: str, last: str) -> str:
+    """Return what is written at both edges, once where it is the same."""
     return first if first == last else f"{first} / {last}"
 
 

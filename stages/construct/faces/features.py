@@ -24,7 +24,8 @@ from stages.geometry.arrays import Points2, Values, Vector2, Vector3, floats, no
 from stages.geometry.curves.curves import Curve, restrict
 from stages.geometry.curves.plane import PlaneCurve
 from stages.geometry.flat.tabled import tabled
-from stages.geometry.ruled.pullback import APART, SAME, nearest, pulled_back, rivals
+from stages.geometry.ruled.nearest import APART, SAME, nearest, rivals
+from stages.geometry.ruled.pullback import pulled_back
 from stages.geometry.ruled.strip import points
 from stages.model.curves import CurveSpec, PlanePoint, is_flat
 from stages.model.features import CurveHole, CurveMark, Feature, NotchSpec, RulingMarks

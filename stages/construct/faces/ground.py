@@ -12,7 +12,8 @@ import numpy as np
 from stages.construct.faces.based import Based
 from stages.construct.features import tangential
 from stages.geometry.arrays import Array, ArrayValue, Points2, Points3, Values, Vector2, norm
-from stages.geometry.ruled.pullback import by_rulings, newton
+from stages.geometry.ruled.nearest import by_rulings
+from stages.geometry.ruled.pullback import newton
 from stages.geometry.ruled.strip import Strip, jet, points, size
 
 if TYPE_CHECKING:

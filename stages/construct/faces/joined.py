@@ -16,7 +16,7 @@ from stages.construct.faces.strip import NoSeamError, sampled, strip_of
 from stages.construct.faces.trim import MEETS
 from stages.construct.joins import SMOOTH_RAD
 from stages.geometry.arrays import Matrix, Points3, Vector3, cross3, diagonal, norm, unit
-from stages.geometry.ruled.pullback import nearest
+from stages.geometry.ruled.nearest import nearest
 from stages.geometry.ruled.ruled import RuledPatch
 from stages.geometry.ruled.strip import Strip, jet
 from stages.model.cadface import CadBody, CadFace, CadPlane, CadSweep

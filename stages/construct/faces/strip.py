@@ -17,7 +17,7 @@ from stages.construct.quintic import Vector, combine, scaling, vector
 from stages.geometry.arrays import Array, Points3, Values, Vector3, cross3, dot, floats
 from stages.geometry.curves.curves import Circular, Curve, affine, exactly, rational
 from stages.geometry.ruled.backwards import exchanged
-from stages.geometry.ruled.pullback import nearest
+from stages.geometry.ruled.nearest import nearest
 from stages.geometry.ruled.ruled import RuledPatch, between
 from stages.geometry.ruled.strip import Strip, jet
 from stages.model.cadface import CadCone, CadFace, CadSweep

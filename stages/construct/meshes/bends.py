@@ -2,7 +2,7 @@
 
     bent_sheet(part, mesh, loops, tol) -> BentSheet | None
 
-The mesh is seen along its rulings (`geometry.meshprofile`), its profile is divided into legs (`profilelegs`) and one
+The mesh is seen along its rulings (`geometry.mesh.profile`), its profile is divided into legs (`profilelegs`) and one
 chain of tangent legs is fitted to all vertices (`profilechain`).  It stands for the mesh only if what the file keeps of
 its numbers explains how far each vertex is from it (the rule of `mesh.recognise`, of which noise is no part), if no
 facet cuts a corner, and if all facets keep their sense in the plane.  Outlines and holes are refitted in the plane

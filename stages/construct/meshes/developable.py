@@ -2,7 +2,7 @@
 
     developable(part, mesh, loops, tol) -> Found | None
 
-The envelope (`geometry.meshrulings`) is developable by construction; whether it is the surface of the mesh its
+The envelope (`geometry.mesh.rulings`) is developable by construction; whether it is the surface of the mesh its
 vertices tell.  It is taken if none is farther away than a tenth of the chord and than `NEAR` of the size, or than
 rounding and noise explain; so what is only nearly developable is left to those who flatten it.  Straight and
 circular edges of the outline are found in the plane, where the vertices lie by the exact development of the patch, and

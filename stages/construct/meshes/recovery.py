@@ -2,12 +2,12 @@
 
     recovered(part, mesh, loops, tol) -> Recovery | None
 
-Planes, cylinders of revolution and right circular cones are recognised by their vertices (`geometry.meshrecognise`).
-The boundary's points go into the plane by closed forms; smooth edges are put through them there (`geometry.refit`):
-lines, arcs and splines.  Where they are the four edges of a patch the surface is that patch, otherwise it carries them
-as its trim.  Flanges, bends and folds with parallel rulings make a strip (`mesh.bending`).  Any other developable is
-fitted as the envelope of its tangent planes (`developable`).  None where the vertices are not explained by such a
-surface: then the mesh itself has to be flattened.
+Planes, cylinders of revolution and right circular cones are recognised by their vertices (`geometry.mesh.recognise`).
+The boundary's points go into the plane by closed forms; smooth edges are put through them there, lines, arcs and
+splines (`geometry.curves.refit`).  Where they are the four edges of a patch the surface is that patch, otherwise it
+carries them as its trim.  Flanges, bends and folds with parallel rulings make a strip (`mesh.bending`).  Any other
+developable is fitted as the envelope of its tangent planes (`developable`).  None where the vertices are not explained
+by such a surface: then the mesh itself has to be flattened.
 """
 
 from collections.abc import Sequence

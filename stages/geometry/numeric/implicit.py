@@ -41,8 +41,10 @@ def implicit(G: Array, expected: Values) -> Array:
 
     expected: the rate dx/dh at a crossing, roughly.
     """
-    x = _regular(G[:-1, :-1])
     crossing = crosses(G)
+    x = np.zeros_like(G[0, :-1])
+    # not where curves cross: divided by a G_x that is rounding the powers would overflow
+    x[:, ~crossing] = _regular(G[:-1, :-1, ~crossing])
     if crossing.any() and x.shape[0] > 1:
         x[1:, crossing] = _crossing(G[..., crossing], expected[crossing])
     return x

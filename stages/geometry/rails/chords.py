@@ -2,10 +2,13 @@
 
 Inside a cell of the lattice zeros on its sides and corners are joined by chords; a chord is kept if both parameters
 rise along it and both zeros are open, which is where the arc is a ruled developable.  Where two arcs cross in a cell
-each goes on, or turns into the other.  Rails that share an end point have arcs that begin there.
+each goes on, or turns into the other.  Crossing arcs that leave a cell through one side are not seen there, as F has
+one sign at both its ends: then the cells on both its sides are taken together.  Rails that share an end point have arcs
+that begin there.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 
 import numpy as np
 
@@ -20,8 +23,11 @@ Chord = tuple[Place, Place]
 
 def chords(found: Field, every: Zeros) -> list[Chord]:
     """Return the chords of the arcs along which both parameters rise and both zeros are open."""
-    at_corner = _at_corners(found, every)
-    pairs = (pair for cell in _cells(found, every) for pair in _joined(found, every, at_corner, cell))
+    at_corner, cells = _at_corners(found, every), _cells(found, every)
+    unseen = _unseen(found, every, cells)
+    taken = {cell for row in unseen for cell in row}
+    pairs = [pair for cell in cells if cell not in taken for pair in _joined(found, every, at_corner, cell)]
+    pairs += [pair for row, middle in unseen.items() for pair in _through(every, _on_sides(every, row), middle)]
     rising = (_rising(every, pair) for pair in pairs)
     return [pair for pair in rising if pair is not None]
 
@@ -89,8 +95,8 @@ def _joined(found: Field, every: Zeros, at_corner: Mapping[Cell, Place], cell: C
     decides.
     """
     i, j = cell
-    left, right, low, high = ("column", i, j), ("column", i + 1, j), ("row", i, j), ("row", i, j + 1)
-    there: list[Place] = [side for side in (left, low, right, high) if side in every]
+    left, low, right, high = _sides(cell)
+    there = _on_sides(every, [cell])
     for corner in ((i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)):
         place = at_corner.get(corner)
         if place and not any(_is_at(found, every[other], *corner) for other in there):
@@ -99,14 +105,62 @@ def _joined(found: Field, every: Zeros, at_corner: Mapping[Cell, Place], cell: C
         return [(there[0], there[1])]
     if len(there) < len("abc"):
         return []
-    middle = _crossing(found, cell)
+    middle = _crossing(found, [cell])
     if middle is not None:
-        return [(p, q) for p in there for q in there if p != q and _passes(every[p], middle, every[q])]
+        return _through(every, there, middle)
     if len(there) > len([side for side in there if side in (left, low, right, high)]):
         return [(p, q) for p in there for q in there if p < q]
     if (_middle(found, cell) >= 0.0) == (found.F[i, j] >= 0.0):
         return [(left, high), (low, right)]
     return [(left, low), (right, high)]
+
+
+def _sides(cell: Cell) -> tuple[Place, Place, Place, Place]:
+    """Return the sides of a cell: left, low, right, high."""
+    i, j = cell
+    return ("column", i, j), ("row", i, j), ("column", i + 1, j), ("row", i, j + 1)
+
+
+def _on_sides(every: Zeros, row: Sequence[Cell]) -> list[Place]:
+    """Return the zeros on the sides of cells."""
+    return [side for cell in row for side in _sides(cell) if side in every]
+
+
+def _unseen(found: Field, every: Zeros, cells: Sequence[Cell]) -> dict[tuple[Cell, ...], Values]:
+    """Return the crossings of arcs that go unseen through the sides between cells in a row, by these cells.
+
+    The first and the last cell have two zeros, none on a side between; those in the middle have none at all.
+    """
+    known = set(cells)
+    two = {cell for cell in cells if len(_on_sides(every, [cell])) == len("ab")}
+    rows = (_row(known, cell, step) for cell in cells if cell in two for step in ((1, 0), (0, 1)))
+    apart = (row for row in rows if row[-1] in two and _is_parted(found, every, row))
+    crossed = ((row, _crossing(found, row)) for row in apart)
+    return {row: middle for row, middle in crossed if middle is not None}
+
+
+def _row(known: AbstractSet[Cell], cell: Cell, step: Cell) -> tuple[Cell, ...]:
+    """Return the cells from one to the next in a direction that has a zero, at most `UNSEEN` of them."""
+    steps = ((k, (cell[0] + k * step[0], cell[1] + k * step[1])) for k in range(1, UNSEEN))
+    last = next((k for k, beyond in steps if beyond in known), 0)
+    return tuple((cell[0] + k * step[0], cell[1] + k * step[1]) for k in range(last + 1))
+
+
+UNSEEN = 10
+"""Cells: arcs that cross at slopes of a tenth in t and s are a whole cell apart five cells from the crossing."""
+
+
+def _is_parted(found: Field, every: Zeros, row: Sequence[Cell]) -> bool:
+    """Return whether cells, the first and the last of them apart, lie in one piece and share no side with a zero."""
+    (i, j), (k, m) = row[0], row[-1]
+    one_piece = found.a.inside[i : k + 1].all() and found.b.inside[j : m + 1].all()
+    shared = {*_on_sides(every, row[:1])} & {*_on_sides(every, row[-1:])}
+    return len(row) > 1 and bool(one_piece) and not shared
+
+
+def _through(every: Zeros, there: Sequence[Place], middle: Values) -> list[Chord]:
+    """Return the chords from zeros below a crossing to those above it."""
+    return [(p, q) for p in there for q in there if p != q and _passes(every[p], middle, every[q])]
 
 
 def _passes(first: Zero, middle: Values, second: Zero) -> bool:
@@ -116,12 +170,12 @@ def _passes(first: Zero, middle: Values, second: Zero) -> bool:
     return bool(below and second.t >= t - SAME and second.s >= s - SAME)
 
 
-def _crossing(found: Field, cell: Cell) -> Values | None:
-    """Return where two arcs cross in a cell, by the parameters of the rails."""
-    i, j = cell
+def _crossing(found: Field, row: Sequence[Cell]) -> Values | None:
+    """Return where two arcs cross in cells in a row, by the parameters of the rails."""
+    (i, j), (k, m) = row[0], row[-1]
     a, b = found.a, found.b
     number = np.array([a.piece[i], b.piece[j]])
-    places = np.stack([a.local(np.array([i, i + 1])), b.local(np.array([j, j + 1]))], axis=1)
+    places = np.stack([a.local(np.array([i, k + 1])), b.local(np.array([j, m + 1]))], axis=1)
     place = crossing(a.pieces[number[0]], b.pieces[number[1]], places)
     return None if place is None else place + number
 

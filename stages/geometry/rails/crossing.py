@@ -11,19 +11,18 @@ import numpy as np
 
 from stages.geometry.arrays import Array, Values
 from stages.geometry.curves.curves import Curve
-from stages.geometry.rails.linked import Link
 from stages.geometry.rails.mismatch import mismatch_series, scale
 
 
-def crossings(along: Link) -> Array:
-    """Return the crossings inside an arc, (t, s) in rising order, shape (n, 2)."""
-    F = mismatch_series(along.a, along.b, along.t, along.w - along.t, 1)
+def crossings(a: Curve, b: Curve, w: Values, t: Values) -> Array:
+    """Return the crossings inside the arc of these knots, (t, s) in rising order, shape (n, 2)."""
+    F = mismatch_series(a, b, t, w - t, 1)
     steep = F[1, 0] - F[0, 1]
     k = np.flatnonzero(steep[:-1] * steep[1:] <= 0.0)
-    pairs = np.stack([along.t, along.w - along.t], axis=1)
-    found = [crossing(along.a, along.b, pairs[i : i + 2]) for i in k]
+    pairs = np.stack([t, w - t], axis=1)
+    found = [crossing(a, b, pairs[i : i + 2]) for i in k]
     places = sorted({(float(place[0]), float(place[1])) for place in found if place is not None})
-    inner = [place for place in places if along.w[0] + APART < sum(place) < along.w[-1] - APART]
+    inner = [place for place in places if w[0] + APART < sum(place) < w[-1] - APART]
     kept = [place for i, place in enumerate(inner) if i == 0 or sum(place) - sum(inner[i - 1]) > APART]
     return np.array(kept).reshape(-1, 2)
 

@@ -89,7 +89,8 @@ def link(a: Curve, b: Curve, w: Values, t: Values) -> Link:
     made = Link(a, b, w, t, _rates(a, b, w, t), ends, reach)
     for _ in range(ROUNDS):
         middles = (made.w[:-1] + made.w[1:]) / 2.0
-        middles = middles[_clear(made, middles) & (np.diff(made.w) > SHORTEST)]
+        first, last = _held(made, middles)
+        middles = middles[~first & ~last & (np.diff(made.w) > SHORTEST)]
         found = _solved(made, middles)
         off = np.abs(_guess(made, middles) - found) > NEAR / 2.0
         if not off.any() or made.w.size > MOST_KNOTS:
@@ -110,30 +111,46 @@ def _crossed_ends(a: Curve, b: Curve, w: Values, t: Values) -> tuple[Array, Arra
     chords = np.array([(t[1] - t[0]) / (w[1] - w[0]), (t[-1] - t[-2]) / (w[-1] - w[-2])])
     ends = implicit(G, chords)
     ends[0] = t[pair]
-    reach = np.where(crosses(G), FARTHEST, 0.0)
-    for k, away in enumerate((1.0, -1.0)):
-        while reach[k] > 0.0:
-            step = np.array([away * reach[k]])
-            there = np.polynomial.polynomial.polyval(step, ends[:, k])
-            other = w[pair[k]] + step - there
-            inside = 0.0 <= float(there[0]) <= 1.0 and 0.0 <= float(other[0]) <= 1.0
-            size = scale(a.jet(there, 1), b.jet(other, 1))
-            if inside and (np.abs(mismatch(a, b, there, other)) <= NOISE * size).all():
-                break
-            reach[k] = reach[k] / 2.0 if reach[k] > SHORTEST else 0.0
-    return ends.T, reach
+    span = float(w[-1] - w[0])
+    reaches = [span, *(reach for reach in REACHES if reach < span)]
+    held = np.zeros(len(pair))
+    for k in np.flatnonzero(crosses(G)):
+        away = 1.0 if k == 0 else -1.0
+        good = (r for r in reaches if _holds(a, b, float(w[pair[k]]), away * r, ends[:, k]))
+        held[k] = next(good, 0.0)
+    return ends.T, held
+
+
+def _holds(a: Curve, b: Curve, w: float, step: float, series: Values) -> bool:
+    """Return whether the series about w gives a place on F = 0 at a step from there, to rounding."""
+    there = np.polynomial.polynomial.polyval(np.array([step]), series)
+    other = w + step - there
+    if not all(-ROUNDED <= float(x[0]) <= 1.0 + ROUNDED for x in (there, other)):
+        return False
+    if abs(step) > FAR and (np.abs(series[-LAST:]) * abs(step) ** np.arange(TERMS)[-LAST:] > EPS).any():
+        return False
+    size = scale(a.jet(there, 1), b.jet(other, 1))
+    return bool((np.abs(mismatch(a, b, there, other)) <= NOISE * size).all())
 
 
 TERMS = 20
-FARTHEST = 0.08
-"""Beyond it rounding leaves 1e-16 / d^2 = 2e-14 of the slope of t(w), less than a quadrature asks for; a series of so
-many terms is exact that far where the arc bends on the scale of half a piece, and else halved until it is."""
+ROUNDED = 1e-12
+"""What a parameter may leave its piece by at the arc's other end: rounding."""
+REACHES = tuple(0.64 / 2**k for k in range(20))
+"""How far a series may hold, the farthest first; it is also tried to the other end of the arc."""
+FAR = 0.08
+"""Beyond it rounding leaves 1e-16 / d^2 = 2e-14 of the slope of t(w), less than a quadrature asks for, but up to a
+hundred times as much where arcs cross at a small angle: there the series is better, if its terms end below rounding."""
+LAST = 3
+"""So many last terms of a series say that it ends."""
 
 
-def _clear(along: Link, w: Values) -> Mask:
-    """Return which places are not within the reach of a crossing at an end."""
-    clear: Mask = (w >= along.w[0] + along.reach[0]) & (w <= along.w[-1] - along.reach[1])
-    return clear
+def _held(along: Link, w: Values) -> tuple[Mask, Mask]:
+    """Return which places take the series about the first knot, and which that about the last; the nearer of both."""
+    away = w - along.w[0], along.w[-1] - w
+    first, last = away[0] < along.reach[0], away[1] < along.reach[1]
+    nearer = away[0] < away[1]
+    return first & (nearer | ~last), last & ~(nearer & first)
 
 
 ROUNDS = 8
@@ -174,11 +191,10 @@ def _kept(along: Link, w: bytes, order: int) -> Array:
 def _expanded(along: Link, w: Values, order: int) -> Array:
     """Return the Taylor coefficients of t(w)."""
     found = np.zeros((order + 1, w.size))
-    clear = _clear(along, w)
+    held = _held(along, w)
+    clear = ~held[0] & ~held[1]
     found[:, clear] = _from_places(along, w[clear], order)
-    at_start = w - along.w[0] < along.w[-1] - w
-    for end, knot in enumerate(along.w[[0, -1]]):
-        here = ~clear & (at_start == (end == 0))
+    for end, (knot, here) in enumerate(zip(along.w[[0, -1]], held, strict=True)):
         if not here.any():
             continue
         series = np.polynomial.Polynomial(along.ends[end])

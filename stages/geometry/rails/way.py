@@ -14,6 +14,7 @@ import numpy as np
 
 from stages.errors import NoSolutionError
 from stages.geometry.arrays import Array, Values
+from stages.geometry.curves.curves import Curve
 from stages.geometry.rails.chords import ONE_PLACE
 from stages.geometry.rails.corners import TINY, Leg, Rail, corners_of
 from stages.geometry.rails.crossing import crossings
@@ -88,8 +89,25 @@ def _divided(leg: Leg, rail_a: Rail, rail_b: Rail) -> tuple[Leg, ...]:
     if leg.move != "along" or _level(leg.knots[0], leg.knots[-1]):
         return (leg,)
     corner = np.floor(leg.knots.mean(axis=0))
+    every = ((part, linked(part.knots, rail_a, rail_b)) for part in _parted(leg, rail_a, rail_b))
+    return tuple(
+        small for part, along in every for small in _split(part, crossings(along.a, along.b, along.w, along.t) + corner)
+    )
+
+
+def _parted(leg: Leg, rail_a: Rail, rail_b: Rail) -> tuple[Leg, ...]:
+    """Return a leg along an arc in parts between the crossings that its knots show.
+
+    More knots are put on its parts only: those between two knots far apart about a crossing would be off the arc.
+    """
+    places = crossings(*_on_pieces(leg.knots, rail_a, rail_b))
+    return _split(leg, places + np.floor(leg.knots.mean(axis=0)))
+
+
+def _split(leg: Leg, places: Array) -> tuple[Leg, ...]:
+    """Return a leg in parts between places on it, (n, 2), that have knots before and after them."""
     made = []
-    for place in crossings(linked(leg.knots, rail_a, rail_b)) + corner:
+    for place in places:
         before, after = (leg.knots < place - TINY).all(axis=1), (leg.knots > place + TINY).all(axis=1)
         if before.any() and after.any():
             made.append(leg.replace(knots=np.vstack([leg.knots[before], place]), folds=False))
@@ -108,15 +126,22 @@ class _Gap:
 
 def _gap(leg: Leg, number: int, rail_a: Rail, rail_b: Rail) -> _Gap:
     """Return where a leg is farthest off F = 0: a corner may have come to another branch of it, or past a turn."""
+    first, last = leg.knots[[0, -1]].sum(axis=1)
     if leg.move != "along" or _level(leg.knots[0], leg.knots[-1]):
         return _Gap(number, 0.0, 0.0)
+    off, place = max(_off(part, rail_a, rail_b) for part in _parted(leg, rail_a, rail_b))
+    return _Gap(number, float((place - first) / (last - first)), off)
+
+
+def _off(leg: Leg, rail_a: Rail, rail_b: Rail) -> tuple[float, float]:
+    """Return the largest |F| between two knots along a leg, as a share of |r'||p||c'|, and its place, t + s."""
     along = linked(leg.knots, rail_a, rail_b)
     w = (along.w[:-1] + along.w[1:]) / 2.0
     t = arc(along, w, 0)[0]
     size = scale(along.a.jet(t, 1), along.b.jet(w - t, 1))
     off = np.abs(mismatch(along.a, along.b, t, w - t)) / size
     worst = int(np.argmax(off))
-    return _Gap(number, float((w[worst] - along.w[0]) / (along.w[-1] - along.w[0])), float(off[worst]))
+    return float(off[worst]), float(w[worst] - along.w[0] + leg.knots[0].sum())
 
 
 def _bridged(parts: Sequence[Leg], gap: _Gap) -> tuple[Leg, ...]:
@@ -154,6 +179,11 @@ ON_ARC = 1e-9
 
 def linked(knots: Array, rail_a: Rail, rail_b: Rail) -> Link:
     """Return the arc with these knots, which lie in one piece of each rail."""
+    return link(*_on_pieces(knots, rail_a, rail_b))
+
+
+def _on_pieces(knots: Array, rail_a: Rail, rail_b: Rail) -> tuple[Curve, Curve, Values, Values]:
+    """Return the pieces of the rails that knots lie in, and w and t of the knots on them."""
     i, j = (int(np.floor(knots[:, axis].mean())) for axis in (0, 1))
     beyond = float(np.max(np.abs(knots - np.array([i, j]) - MIDDLE))) - MIDDLE
     if not beyond <= TINY:
@@ -161,7 +191,7 @@ def linked(knots: Array, rail_a: Rail, rail_b: Rail) -> Link:
     t, s = np.clip(knots[:, 0] - i, 0.0, 1.0), np.clip(knots[:, 1] - j, 0.0, 1.0)
     w = t + s
     kept = np.append(True, np.diff(w) > TINY)
-    return link(rail_a[i], rail_b[j], w[kept], t[kept])
+    return rail_a[i], rail_b[j], w[kept], t[kept]
 
 
 MIDDLE = 0.5

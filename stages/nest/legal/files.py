@@ -72,12 +72,12 @@ def _matched(sheet: ReadSheet, by_name: Mapping[str, FlatPattern]) -> tuple[list
 
 def _faults(sheet: ReadSheet, lost: Sequence[str], wanted: int) -> Iterator[Finding]:
     """Yield which copies are not in the file as they were placed, or that there is more in it."""
-    label = f"sheet {sheet.layout.sheet.id}-{sheet.layout.index}"
+    label = f"{sheet.layout.sheet.id}-{sheet.layout.index}"
     for name in lost:
-        yield fatal("file-copies", f"{name} is not in the file of {label} as it was placed", sheet=label)
+        yield fatal("file-copies", f"{name} is not in the file of sheet {label} as it was placed", sheet=label)
     there = len(sheet.outer) + len(sheet.inner)
     if not lost and there != wanted:
-        yield fatal("file-copies", f"the file of {label} has {there} contours, placed are {wanted}", sheet=label)
+        yield fatal("file-copies", f"the file of sheet {label} has {there} contours, placed are {wanted}", sheet=label)
 
 
 def _pairs(wanted: Sequence[ArcPath], read: Sequence[ArcPath]) -> list[int | None]:

@@ -64,7 +64,7 @@ def _too_near(ground: Ground, laid: Sequence[Laid], gaps: Gaps, options: NestOpt
         return []
     names = " and ".join(laid[i].name for i in pair)
     message = f"{names} on {ground.label} are {least:.6g} mm apart, asked {options.gap_mm:g} mm"
-    return [fatal("gap", message, sheet=ground.label, gap_mm=least)]
+    return [fatal("gap", message, sheet=ground.name, gap_mm=least)]
 
 
 def _overlapping(ground: Ground, laid: Sequence[Laid], overlaps: Gaps) -> list[Finding]:
@@ -73,7 +73,7 @@ def _overlapping(ground: Ground, laid: Sequence[Laid], overlaps: Gaps) -> list[F
         fatal(
             "overlap",
             f"{laid[i].name} and {laid[j].name} on {ground.label} overlap by {area:.6g} mm2",
-            sheet=ground.label,
+            sheet=ground.name,
             overlap_mm2=area,
         )
         for (i, j), area in overlaps.items()

@@ -61,10 +61,10 @@ def edge_findings(spread: Spread, distances: list[Distance]) -> Iterator[Finding
     for value, one, what, area_ in distances:
         if area_ > 0.0:
             message = f"{one.name} lies on {what} of {ground.label}, by {area_:.6g} mm2"
-            yield fatal("defect", message, sheet=ground.label, overlap_mm2=area_)
+            yield fatal("defect", message, sheet=ground.name, overlap_mm2=area_)
         elif value < asked - GAP_TOLERANCE_MM or _beyond(value, ground.outline):
             where = f"{value:.6g} mm from {what} of {ground.label}" if value > 0.0 else f"not within {ground.label}"
-            yield fatal("edge-gap", f"{one.name} is {where}, asked {asked:g} mm", sheet=ground.label, gap_mm=value)
+            yield fatal("edge-gap", f"{one.name} is {where}, asked {asked:g} mm", sheet=ground.name, gap_mm=value)
 
 
 def _beyond(value: float, outline: Region | None) -> bool:
@@ -104,7 +104,7 @@ def zone_finding(spread: Spread, one: Laid, zone: Zone, area_mm2: float) -> Find
     wanted = f"it needs {one.quality}" if isinstance(one.quality, int) else "it must lie outside all zones"
     where = f"zone {number} of {spread.ground.label}, of quality {zone.quality}"
     message = f"{one.name} reaches into {where}, by {area_mm2:.6g} mm2; {wanted}"
-    return fatal("zone", message, sheet=spread.ground.label, overlap_mm2=area_mm2)
+    return fatal("zone", message, sheet=spread.ground.name, overlap_mm2=area_mm2)
 
 
 def accepts(quality: Quality, zone: int) -> bool:

@@ -41,9 +41,14 @@ class Ground:
     zones: tuple[tuple[Zone, Region], ...]
 
     @property
+    def name(self) -> str:
+        """Its stock and number."""
+        return f"{self.sheet.id}-{self.index}"
+
+    @property
     def label(self) -> str:
         """What to call it in a message."""
-        return f"sheet {self.sheet.id}-{self.index}"
+        return f"sheet {self.name}"
 
 
 @dataclass(frozen=True, eq=False)

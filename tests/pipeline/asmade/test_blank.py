@@ -84,3 +84,4 @@ def test_a_kerf_shortens_what_lies_between_two_corners_that_stand_out(sizes: dic
 def test_a_blank_with_allowances_is_measured_as_it_is_cut(sizes: dict[tuple[str, str], Dimension]) -> None:
     found = [sizes["sewn", what].nominal for what in ("width", "height", "edge A-B")]
     assert found == pytest.approx([50.0, 40.0, 50.0])
+    assert sizes["sewn", "edge A-B"].rate == pytest.approx(-1.0), "its sides are straight: they tell the kerf"

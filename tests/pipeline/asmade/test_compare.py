@@ -82,6 +82,13 @@ def test_the_usage_is_told(made_job: Path, tmp_path: Path, capfd: pytest.Capture
     assert planish("schema", "--compare") == 0
 
 
+def test_the_report_of_pooled_jobs_is_called_that(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "report.json").write_text('{"schema": "planish-pool/1", "status": "made", "groups": []}', "utf-8")
+    assert planish("compare", "--template", tmp_path) == 2
+    told = capfd.readouterr().err
+    assert 'report.json: schema: "planish-pool/1" is not the report of a job (give the output folder of' in told
+
+
 def test_the_same_readings_give_the_same_document(made_job: Path, tmp_path: Path) -> None:
     file = sheet(tmp_path, GOOD)
     one, other = (compare_document(comparison(made_job / "out", file, None)) for _ in range(2))

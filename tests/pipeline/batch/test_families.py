@@ -42,6 +42,23 @@ def test_a_cell_in_quotes_may_hold_commas_quotes_and_ends_of_lines(tmp_path: Pat
     ]
 
 
+@pytest.mark.parametrize("between", [",", ";", "\t"])
+def test_a_quote_within_a_cell_is_a_quote_and_no_row_is_lost(tmp_path: Path, between: str) -> None:
+    body = 'a,1/4",x\nb,1 1/2 in,"3"" pipe\n,""1/8"""\nc,"5""",5" by 3"\nd,2,\n'
+    table = table_of(family(tmp_path, (HEAD + body).replace(",", between)), tmp_path / "blade.toml")
+    content = table.file.read_bytes()
+    found = [(entry, content[entry.offset :][: entry.length]) for _, entry in rows(table)]
+    assert [(entry.name, entry.line) for entry, _ in found] == [("a", 2), ("b", 3), ("c", 4), ("d", 5)]
+    cells = [[pair.partition("=")[2] for pair in settings(table.columns, row, between)] for _, row in found]
+    wanted = [['1/4"', "x"], ["1 1/2 in", f'3" pipe\n{between}"1/8"'], ['5"', '5" by 3"'], ["2"]]
+    assert cells == wanted
+
+
+def test_a_row_that_quotes_have_swallowed_others_into_says_how_many(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"cannot be read: .*; its quotes take 3 lines for one row"):
+        settings(("a", "b"), b'"x,1\ny,2\nz,3')
+
+
 @pytest.mark.parametrize("between", [";", "\t"])
 @pytest.mark.parametrize("mark", ["", "\ufeff"])
 def test_a_table_of_a_spreadsheet_is_read_whatever_stands_between_its_cells(

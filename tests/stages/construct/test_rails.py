@@ -214,3 +214,30 @@ def test_a_strip_is_a_surface_like_any_other() -> None:
     assert isinstance(made.surface, RuledSurface)
     assert made.pattern is not None
     assert_near(made.value("unroll", "area_error"), 0.0, bound=1e-14, why="quadrature")
+
+
+S_SHAPED = [[0, 0, 0], [3, 4, 1], [6, -3, 0], [9, 2, 2]]
+TOP = [6, 1, 9]
+
+
+def on_one_cone(weight: str, points: list[list[int]] = S_SHAPED) -> Table:
+    """Return two rails of the cone with its apex at TOP, the second half-way: its s is t of the same ruling by
+    t = w s / (1 - s + w s), since its weights are 1, w, w^2 and w^3."""
+    half = [[str(Fraction(x + a) / 2) for x, a in zip(point, TOP, strict=True)] for point in points]
+    weights = [str(Fraction(weight) ** k) for k in range(4)]
+    knots = [0] * 4 + [1] * 4
+    b = {"bspline": {"degree": 3, "knots": knots, "points": half, "weights": weights}}
+    return rails({"bezier": points}, b)
+
+
+@pytest.mark.parametrize("weight", ["1/10", "2/5", "3/5", "7/5", "29/10", "12", "20"])
+def test_rails_of_one_cone_need_no_apex_on_a_rail_where_they_bend_back(weight: str) -> None:
+    """Another arc crosses at the inflection, through the same side of a cell: with the lattice alone that is unseen."""
+    made = passage(on_one_cone(weight))
+    assert kinds(made) == ["ruled", "ruled"]
+    found = made.reports["construct"].detail["pieces"]
+    assert isinstance(found, list)
+    w, (t, s) = float(Fraction(weight)), (found[0][rail][1] for rail in "ab")
+    assert_near([t], [w * s / (1.0 - s + w * s)], bound=1e-12, why="one ruling of the cone")
+    assert "sharp-apex" not in made.codes("verify")
+    assert_relative([made.side("flat")["area"]], [made.side("surface")["area"]], bound=1e-13, why="an isometry")

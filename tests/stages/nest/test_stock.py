@@ -250,7 +250,10 @@ def test_a_fixed_copy_that_lies_on_another_is_found_by_the_certifier() -> None:
     both = (FIXED, Placement("a", 1, Rigid2(130.0, 80.0, 17.0)))
     outcome = run(parts, [plate], QUICK, Nesting((SheetLayout(plate, 1, both, 0.0),)))
     assert outcome.product is None
-    assert "no-layout" in [finding.code for finding in outcome.report.findings]
+    *faults, last = outcome.report.findings
+    assert {(one.where or {}).get("sheet") for one in faults} == {"s-1"}
+    assert (last.code, last.fatal) == ("no-layout", True)
+    assert "in the one that is given move the copies that are named" in last.message
 
 
 @pytest.mark.parametrize("wrong", ["part", "sheet"])

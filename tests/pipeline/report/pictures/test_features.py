@@ -7,6 +7,7 @@ from pipeline.report.pictures import canvas as page
 from pipeline.report.pictures.edges import hole_text, rulings, side_length, sides
 from pipeline.report.pictures.features import drawn_on, sampled
 from pipeline.report.pictures.flat_names import Name, first_free
+from pipeline.report.pictures.marks import marks_legend
 from pipeline.report.pictures.names import Label, best_place, clearances
 from pipeline.report.pictures.net import net, view_direction
 from pipeline.report.pictures.part import part_picture, sheet_picture
@@ -45,6 +46,12 @@ def test_a_drilled_hole_lies_on_the_pipe_where_it_was_asked_for() -> None:
         bound=40.0**2 / (8.0 * RADIUS),
         why="a drill of 40 mm is 40^2 / (8 R) off its tangent plane",
     )
+
+
+def test_a_bend_line_that_a_hole_cuts_into_pieces_counts_once() -> None:
+    _, pattern = made(HALF_PIPE, bend=BENT, hole=[DRILLED | {"diameter": 120}])
+    assert len(pattern.marks) > 12
+    assert marks_legend(pattern) == ["dash-dotted: 12 bend lines"], "180 deg in hits of 15"
 
 
 def test_bend_lines_lie_along_rulings_and_take_the_place_of_those() -> None:

@@ -9,7 +9,7 @@ from stages.geometry.curves.curves import Circular, affine, bezier, restrict
 from stages.geometry.numeric.implicit import implicit
 from stages.geometry.numeric.roots import bracketed
 from stages.geometry.rails.crossing import crossings
-from stages.geometry.rails.linked import Linked, arc, both_rails, link
+from stages.geometry.rails.linked import Link, Linked, arc, both_rails, link
 from stages.geometry.rails.mismatch import mismatch
 from stages.geometry.ruled.ruled import between, warp
 from stages.unroll.sides import surface_figures
@@ -131,7 +131,7 @@ def test_a_crossing_of_two_arcs_is_found_and_passed_exactly() -> None:
         bezier([[Fraction(x) + m for x, m in zip(p, by, strict=True)] for p in points]) for by in ((0, 0, 0), (1, 0, 2))
     )
     w = np.linspace(0.0, 2.0, 51)
-    ((t, s),) = crossings(link(a, b, w, w / 2.0))
+    ((t, s),) = crossings(a, b, w, w / 2.0)
     # the inflection: y'' x' = x'' y' with x' = 3 (1 + 2 t - 2 t^2), y' = 3 (2 - 10 t + 10 t^2)
     x1, x2 = 3.0 * (1.0 + 2.0 * t - 2.0 * t * t), 3.0 * (2.0 - 4.0 * t)
     y1, y2 = 3.0 * (2.0 - 10.0 * t + 10.0 * t * t), 3.0 * (20.0 * t - 10.0)
@@ -143,6 +143,33 @@ def test_a_crossing_of_two_arcs_is_found_and_passed_exactly() -> None:
     assert_near(found[0], near / 2.0, bound=1e-14, why="the series about the crossing")
     assert_near(found[1], np.full(7, 0.5), bound=1e-12, why="F_t is 0.1 of its size where the series ends")
     assert_near(found[2], np.zeros(7), bound=1e-10, why="and once more divided")
+
+
+def beside_a_crossing(points: list[list[Fraction]], place: float) -> tuple[Link, np.ndarray]:
+    """Return the arc t = s between a rail and the same moved along, from a crossing at `place` to the end, and w."""
+    a, b = (bezier([[x + m for x, m in zip(p, by, strict=True)] for p in points]) for by in ((0, 0, 0), (1, 0, 2)))
+    w = np.linspace(2.0 * place, 2.0, 7)
+    return link(a, b, w, w / 2.0), np.linspace(2.0 * place, 2.0, 501)
+
+
+BENDS_LATE = [[Fraction(x), Fraction(y), Fraction(0)] for x, y in ((0, 0), (1, 0), (2, "9.7"), (3, "19.1"))]
+"""y'' = 0 at 97/100: 97 (1 - t) - 3 t = 0."""
+
+
+def test_the_series_about_a_crossing_holds_as_far_as_the_end_of_the_rails() -> None:
+    along, w = beside_a_crossing(BENDS_LATE, 0.97)
+    found = arc(along, w, 2)
+    assert_near(found[1], np.full_like(w, 0.5), bound=1e-15, why="t = w / 2; Newton's method leaves 1e-16 / 0.04^2")
+    assert_near(found[2], np.zeros_like(w), bound=1e-14, why="t = w / 2; Newton's method leaves 1e-16 / 0.04^3")
+
+
+def test_the_series_about_an_end_where_nothing_crosses_is_not_used() -> None:
+    """Within the reach of the first end most places are nearer to the last one."""
+    along, w = beside_a_crossing(BENDS_LATE, 0.97)
+    assert along.reach[0] > (w[-1] - w[0]) / 2.0
+    assert along.reach[1] == 0.0
+    ends = np.stack([along.ends[0], np.full_like(along.ends[1], np.nan)])
+    assert np.isfinite(arc(along.replace(ends=ends), w, 2)).all()
 
 
 def test_an_implicit_function_is_found_where_two_curves_cross() -> None:
