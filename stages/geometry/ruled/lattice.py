@@ -48,16 +48,20 @@ class Target:
         """Return the size of the strip, mm."""
         return size(self.strip)
 
+    @property
+    def per_patch(self) -> int:
+        """Return how many places of the lattice there are along each patch."""
+        return max(-(-ALONG // len(self.strip.patches)), 3)
+
     @cached_property
     def step(self) -> float:
-        """Return the step of the lattice along the strip, in v: the patches are of one width."""
-        return 1.0 / max(-(-ALONG // len(self.strip.patches)) - 1, 2)
+        """Return the longest step of the lattice along the strip, in v."""
+        return float(np.diff(self.strip.knots).max()) / (self.per_patch - 1)
 
     @cached_property
     def places(self) -> Points2:
         """Return the places (u, v) of the lattice."""
-        per_patch = round(1.0 / self.step) + 1
-        v = np.concatenate([np.linspace(a, b, per_patch) for a, b in pairwise(self.strip.knots)])
+        v = np.concatenate([np.linspace(a, b, self.per_patch) for a, b in pairwise(self.strip.knots)])
         u, v = (one.ravel() for one in np.meshgrid(np.linspace(0.0, 1.0, ACROSS), v))
         return np.stack([u, v], axis=1)
 

@@ -18,7 +18,8 @@ def strip_of(table: Table) -> Strip:
     return Strip(patches(table), np.arange(len(patches(table)) + 1.0))
 
 
-OBLIQUE, FRUSTUM, MITRED, TWO = (strip_of(one) for one in (OBLIQUE_CONE, RIGHT_FRUSTUM, MITRED_CYLINDER, CONE_STRIP))
+OBLIQUE, FRUSTUM, MITRED = (strip_of(one) for one in (OBLIQUE_CONE, RIGHT_FRUSTUM, MITRED_CYLINDER))
+TWO = Strip(patches(CONE_STRIP), np.array([0.0, 1.0, 3.0]))
 
 
 def probed(strip: Strip, off: Values, seed: int) -> Points3:
