@@ -126,12 +126,11 @@ def _cloud(surface: "RuledSurface", group: Sequence[PointReading], nominal: Nomi
 
     strip = Strip(surface.patches, np.arange(len(surface.patches) + 1.0))
     measured, heights = np.array([one.at for one in group]), _offsets(surface, group)
-    fit = best_fit(strip, measured, heights) if fitted else None
+    fit, feet = best_fit(strip, measured, heights) if fitted else (None, exact_feet(strip, measured))
     wanted = SETTLED * min(float(one.uncertainty) for one in group)
     if fit is not None and fit.last_step_mm > wanted:
         raise NoSolutionError(f"the best fit of {group[0].part}", reached=fit.last_step_mm, wanted=wanted, unit="mm")
     there = measured if fit is None else fit.motion.moved(measured)
-    feet = exact_feet(strip, there)
     off, _ = off_faces(strip, feet, there, heights)
     first = group[0]
     return Cloud(first.part, first.copy, _results(group, feet, off, point_tolerance(nominal, first.part)), fit)

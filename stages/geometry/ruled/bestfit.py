@@ -6,9 +6,9 @@ points back, and a motion that nothing holds back (round the axis of a cylinder,
 
 A start is sought without knowing one: the frame given and the 24 turns that lay the principal axes of the points along
 those of the surface, each drawn nearer by nearest points of a lattice [1]_.  The best of them are settled by damped
-Gauss-Newton steps on the distances along the normals [2]_, and the least of those once more with exact feet.  Where
-another as good lies elsewhere, `alone` is false.  That none is better is sampled, not proved: points on a small share
-of the part may find a wrong start.
+Gauss-Newton steps on the distances along the normals [2]_, and all points from the least of those, with exact feet.
+Where another as good lies elsewhere, `alone` is false.  That none is better is sampled, not proved: points on a small
+share of the part may find a wrong start.
 
 .. [1] P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", IEEE PAMI 14 (1992) 239-256.
 .. [2] Y. Chen, G. Medioni, "Object modelling by registration of multiple range images", Image and Vision Computing 10
@@ -23,14 +23,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from stages.geometry.arrays import Array, ArrayValue, Points3, Values, Vector3, cross3, norm
-from stages.geometry.ruled.feet import exact_feet
+from stages.geometry.ruled.feet import Feet, exact_feet
 from stages.geometry.ruled.lattice import Off, Target, principal_axes, root_mean_square
 from stages.geometry.ruled.strip import Strip
 
 MOTIONS = 6
 """Of a rigid body: three turns, three shifts."""
-MOST_DRAWN = 300
-"""Points, evenly taken, that the start is sought with."""
+MOST_TRIED = 300
+"""Points, evenly taken, that starts are tried with; all are then settled from the best one."""
 DRAWN = 60
 """Steps that draw a start nearer: what they do not bring near in so many is no good start."""
 TRIED_STARTS, TRIED_STEPS, SETTLED_STARTS = 25, 20, 4
@@ -90,34 +90,36 @@ class BestFit(ArrayValue):
     alone: bool = True
 
 
-def best_fit(strip: Strip, measured: Points3, heights: Values) -> BestFit:
-    """Return the motion of measured points that brings them nearest to the strip at these heights along N, mm."""
-    target = Target(strip, heights)
-    found = [_settled(measured, start, target.near, MOST_STEPS, target.scale) for start in _starts(target, measured)]
+def best_fit(strip: Strip, measured: Points3, heights: Values) -> tuple[BestFit, Feet]:
+    """Return the motion of measured points that brings them nearest to the strip at these heights along N, mm.
+
+    And their feet there, sought on the whole surface.
+    """
+    every = -(-len(measured) // MOST_TRIED)
+    some, points = Target(strip, heights[::every]), measured[::every]
+    found = [_settled(points, start, some.near, MOST_STEPS, some.scale) for start in _starts(some, points)]
     least = min(one.rms_mm for one in found)
-    as_good = [one for one in found if one.rms_mm <= AS_GOOD * least + STILL * target.scale]
+    as_good = [one for one in found if one.rms_mm <= AS_GOOD * least + STILL * some.scale]
     best = min(as_good, key=lambda one: one.motion.angle_rad)
-    here = best.motion.moved(measured)
-    apart = [float(norm(one.motion.moved(measured) - here).max()) for one in as_good]
-    return _exactly(target, measured, best).replace(alone=max(apart) <= ELSEWHERE * target.scale)
+    here = best.motion.moved(points)
+    apart = [float(norm(one.motion.moved(points) - here).max()) for one in as_good]
+    fit, feet = _exactly(Target(strip, heights), measured, best.motion)
+    return fit.replace(alone=max(apart) <= ELSEWHERE * some.scale), feet
 
 
 # Starts
 
 
-def _starts(target: Target, measured: Points3) -> list[Motion3]:
+def _starts(target: Target, points: Points3) -> list[Motion3]:
     """Return the frame given and the best different starts that are found without it."""
-    every = -(-len(measured) // MOST_DRAWN)
-    some = Target(target.strip, target.heights[::every])
-    points = measured[::every]
-    drawn = [_drawn(some, points, start) for start in [UNMOVED, *_along_axes(some, points)]]
+    drawn = [_drawn(target, points, start) for start in [UNMOVED, *_along_axes(target, points)]]
     drawn.sort(key=lambda one: root_mean_square(target.tree.query(one.moved(points))[0]))
     tried = [
-        _settled(points, one, some.rough, TRIED_STEPS, target.scale)
-        for one in _different(some, points, drawn, TRIED_STARTS)
+        _settled(points, one, target.rough, TRIED_STEPS, target.scale)
+        for one in _different(target, points, drawn, TRIED_STARTS)
     ]
     best = [one.motion for one in sorted(tried, key=lambda one: one.rms_mm)]
-    return [UNMOVED, *_different(some, points, best, SETTLED_STARTS)]
+    return [UNMOVED, *_different(target, points, best, SETTLED_STARTS)]
 
 
 def _different(target: Target, points: Points3, motions: Iterable[Motion3], most: int) -> list[Motion3]:
@@ -202,16 +204,18 @@ def _step(arms: Points3, off: Off, damping: float) -> tuple[int, Vector3, Vector
     return MOTIONS - int((told > FLAT).sum()), step[:3] / reach, step[3:]
 
 
-def _exactly(target: Target, measured: Points3, found: BestFit) -> BestFit:
-    """Return a fit settled with feet that are sought on the whole surface."""
+def _exactly(target: Target, measured: Points3, start: Motion3) -> tuple[BestFit, Feet]:
+    """Return the fit of all points and their feet, sought on the whole surface; no last step is known if these move."""
+    found = _settled(measured, start, target.near, MOST_STEPS, target.scale)
     for _ in range(EXACT_ROUNDS):
         here = found.motion.moved(measured)
-        sure = target.at(here, exact_feet(target.strip, here))
+        feet = exact_feet(target.strip, here)
+        sure = target.at(here, feet)
         if sure.rms >= found.rms_mm - STILL * target.scale:
-            break
+            return found, feet
 
         def look(points: Points3, v: Values | None, sure: Off = sure) -> Off:
             return sure if v is None else target.near(points, v)
 
         found = _settled(measured, found.motion, look, MOST_STEPS, target.scale)
-    return found
+    return found.replace(last_step_mm=np.inf), exact_feet(target.strip, found.motion.moved(measured))

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from stages.geometry.arrays import Points3, Values, cross3, norm
+from stages.geometry.ruled import bestfit
 from stages.geometry.ruled.bestfit import BestFit, best_fit
 from stages.geometry.ruled.feet import BESIDE, exact_feet, off_faces
 from stages.geometry.ruled.strip import Strip, jet, size
@@ -43,7 +44,7 @@ def test_points_on_a_part_find_their_places_from_any_frame(strip: Strip, height:
     heights = np.full(COUNT, height * size(strip))
     there = probed(strip, heights, 1)
     measured = elsewhere(there, 2)
-    found = best_fit(strip, measured, heights)
+    found, _ = best_fit(strip, measured, heights)
     assert found.rms_mm <= 1e-12 * size(strip)
     assert_near(found.motion.moved(measured), there, bound=1e-10 * size(strip), why="distances tell 1/100 of a motion")
     assert (found.free, found.alone) == (0, True)
@@ -54,7 +55,7 @@ def test_points_on_a_part_find_their_places_from_any_frame(strip: Strip, height:
 def test_motions_that_no_point_tells_are_counted(strip: Strip, free: int) -> None:
     """A frustum turns about its axis; a cylinder moves along it as well, between its edges."""
     heights = np.zeros(COUNT)
-    found = best_fit(strip, elsewhere(probed(strip, heights, 3), 4), heights)
+    found, _ = best_fit(strip, elsewhere(probed(strip, heights, 3), 4), heights)
     assert found.rms_mm <= 1e-12 * size(strip)
     assert (found.free, found.alone) == (free, False)
 
@@ -66,7 +67,7 @@ def noisy(factor: float, seed: int) -> tuple[Points3, BestFit]:
     strip = strip_of({"kind": "cone", "apex": apex, "directrix": directrix, "fraction": [0, 0.75]})
     off = np.random.default_rng(5).normal(0.0, 1e-3 * factor, COUNT)
     measured = elsewhere(probed(strip, off, 5), seed)
-    return measured, best_fit(strip, measured, np.zeros(COUNT))
+    return measured, best_fit(strip, measured, np.zeros(COUNT))[0]
 
 
 def test_what_is_best_depends_neither_on_the_frame_nor_on_the_size() -> None:
@@ -81,8 +82,10 @@ def test_at_the_least_distances_balance() -> None:
     heights = np.full(COUNT, 0.02)
     there = probed(TWO, 0.02 + np.random.default_rng(8).normal(0.0, 2e-3, COUNT), 8)
     measured = elsewhere(there, 9)
-    here = best_fit(TWO, measured, heights).motion.moved(measured)
-    off, along = off_faces(TWO, exact_feet(TWO, here), here, heights)
+    fit, feet = best_fit(TWO, measured, heights)
+    here = fit.motion.moved(measured)
+    assert_near(feet.place, exact_feet(TWO, here).place, bound=0.0, why="the same search")
+    off, along = off_faces(TWO, feet, here, heights)
     assert_near(off @ along, np.zeros(3), bound=1e-9, why="20 distances of 2e-3, by a motion known to 1e-8")
     assert_near(off @ cross3(here - here.mean(axis=0), along), np.zeros(3), bound=1e-8, why="the same, times the arms")
 
@@ -96,7 +99,7 @@ def plane() -> Strip:
 def test_on_a_plane_the_least_is_the_least_singular_value() -> None:
     rng = np.random.default_rng(10)
     points = np.stack([rng.uniform(20, 70, 40), rng.uniform(10, 50, 40), rng.normal(0.0, 0.05, 40)], axis=1)
-    found = best_fit(plane(), points, np.zeros(40))
+    found, _ = best_fit(plane(), points, np.zeros(40))
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     assert_near(found.rms_mm, float(spread[-1]) / np.sqrt(40.0), bound=1e-12, why="the closed form, some 0.05 mm")
     assert found.free == 3
@@ -106,7 +109,7 @@ def test_edges_hold_points_back() -> None:
     """Points all over a plane that lie beyond one edge by 5 mm are moved in by it."""
     grid = np.stack(np.meshgrid(np.linspace(5.0, 85.0, 9), np.linspace(0.0, 60.0, 7)), axis=-1).reshape(-1, 2)
     points = np.column_stack([grid[:, 0], grid[:, 1] + 5.0, np.zeros(len(grid))])
-    found = best_fit(plane(), points, np.zeros(len(points)))
+    found, _ = best_fit(plane(), points, np.zeros(len(points)))
     assert found.rms_mm <= 1e-9
     assert_near(found.motion.moved(points)[:, 1].max(), 60.0, bound=BESIDE * size(plane()), why="nearer is not beyond")
 
@@ -114,4 +117,21 @@ def test_edges_hold_points_back() -> None:
 def test_a_mirrored_part_does_not_fit() -> None:
     heights = np.zeros(COUNT)
     there = probed(TWO, heights, 11) * np.array([1.0, 1.0, -1.0])
-    assert best_fit(TWO, there, heights).rms_mm > 1e-3 * size(TWO)
+    assert best_fit(TWO, there, heights)[0].rms_mm > 1e-3 * size(TWO)
+
+
+def test_all_points_are_settled_from_the_best_start_of_some(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every other point is tried, and the others count as much in what is least."""
+    heights = np.zeros(2 * COUNT)
+    there = probed(OBLIQUE, np.random.default_rng(14).normal(0.0, 1e-3, 2 * COUNT), 14)
+    measured = elsewhere(there, 15)
+    every, _ = best_fit(OBLIQUE, measured, heights)
+    monkeypatch.setattr(bestfit, "MOST_TRIED", COUNT)
+    found, _ = best_fit(OBLIQUE, measured, heights)
+    assert_near(found.motion.moved(measured), every.motion.moved(measured), bound=1e-8, why="a told share of 1e-8")
+
+
+def test_feet_that_do_not_come_to_rest_are_no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bestfit, "EXACT_ROUNDS", 0)
+    heights = np.zeros(COUNT)
+    assert best_fit(MITRED, probed(MITRED, heights, 16), heights)[0].last_step_mm == np.inf
